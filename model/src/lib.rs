@@ -1,1 +1,30 @@
-//! x
+//! Decisions among many users: the beats-graph, the policy `condorcet`, and welfare.
+//!
+//! ```
+//! use selfneg_core::{Outcome, Side};
+//! use selfneg_model::{Condorcet, Precedence};
+//!
+//! // Three users, 0 the current one. Each beats the next: a cycle.
+//! let outcome = |earlier: usize, later: usize| match (earlier, later) {
+//!     (0, 1) | (1, 2) => Outcome::Agreement(Side::Current),
+//!     _ => Outcome::Agreement(Side::Interrupting),
+//! };
+//! let condorcet = Condorcet::negotiate(3, outcome);
+//! assert_eq!(condorcet.precedence(), Precedence::NoAgreement { candidates: vec![0, 1, 2] });
+//!
+//! // Had user 2 not beaten user 0, user 0 would beat nobody but 1, and nobody would beat 0.
+//! let condorcet = Condorcet::negotiate(3, |earlier, later| match (earlier, later) {
+//!     (0, 2) => Outcome::NoAgreement,
+//!     pair => outcome(pair.0, pair.1),
+//! });
+//! assert_eq!(condorcet.precedence(), Precedence::NoAgreement { candidates: vec![0] });
+//! ```
+#![forbid(unsafe_code)]
+
+mod beats;
+mod condorcet;
+mod welfare;
+
+pub use beats::BeatsGraph;
+pub use condorcet::{Condorcet, Precedence};
+pub use welfare::{most_welfare, welfare};

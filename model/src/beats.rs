@@ -1,0 +1,85 @@
+//! Who beats whom.
+
+use petgraph::Direction;
+use petgraph::algo::tarjan_scc;
+use petgraph::graph::{DiGraph, NodeIndex};
+
+/// The beats-graph of some users: an edge from the winner of each bilateral negotiation
+/// that ended in agreement to its loser. Users are numbered by arrival, from 0.
+#[derive(Clone, Debug, Default)]
+pub struct BeatsGraph {
+    graph: DiGraph<(), ()>,
+}
+
+impl BeatsGraph {
+    /// `users` users of whom nobody beats anybody yet.
+    #[must_use]
+    pub fn new(users: usize) -> Self {
+        let mut graph = DiGraph::new();
+        for _ in 0..users {
+            graph.add_node(());
+        }
+        Self { graph }
+    }
+
+    /// Notes that `winner` beats `loser`. Users that the graph does not have are left
+    /// out.
+    pub fn add(&mut self, winner: usize, loser: usize) {
+        let (winner, loser) = (NodeIndex::new(winner), NodeIndex::new(loser));
+        let known = |user: NodeIndex| user.index() < self.graph.node_count();
+        if known(winner) && known(loser) {
+            self.graph.update_edge(winner, loser, ());
+        }
+    }
+
+    /// Whether `winner` beats `loser`.
+    #[must_use]
+    pub fn beats(&self, winner: usize, loser: usize) -> bool {
+        self.graph.contains_edge(NodeIndex::new(winner), NodeIndex::new(loser))
+    }
+
+    /// How many users there are.
+    #[must_use]
+    pub fn users(&self) -> usize {
+        self.graph.node_count()
+    }
+
+    /// Who beats `user`, by arrival.
+    #[must_use]
+    pub fn beaten_by(&self, user: usize) -> Vec<usize> {
+        let mut winners: Vec<usize> = self
+            .graph
+            .neighbors_directed(NodeIndex::new(user), Direction::Incoming)
+            .map(NodeIndex::index)
+            .collect();
+        winners.sort_unstable();
+        winners
+    }
+
+    /// The user who beats everyone else, if there is one. A single user does.
+    #[must_use]
+    pub fn condorcet_winner(&self) -> Option<usize> {
+        let others = self.users().checked_sub(1)?;
+        (0..self.users()).find(|&user| self.graph.neighbors(NodeIndex::new(user)).count() == others)
+    }
+
+    /// The Schwartz set, by arrival: the members of those strongly connected components
+    /// that nobody outside beats. Empty only without users.
+    #[must_use]
+    pub fn schwartz_set(&self) -> Vec<usize> {
+        let mut set: Vec<usize> = tarjan_scc(&self.graph)
+            .into_iter()
+            .filter(|component| {
+                component.iter().all(|&user| {
+                    self.graph
+                        .neighbors_directed(user, Direction::Incoming)
+                        .all(|winner| component.contains(&winner))
+                })
+            })
+            .flatten()
+            .map(NodeIndex::index)
+            .collect();
+        set.sort_unstable();
+        set
+    }
+}
