@@ -88,6 +88,20 @@ pub enum Ending {
     LiteralQuit(Side),
 }
 
+impl Ending {
+    /// `accepted`, `held-offer-stands`, `tie`, `both-quit` or `literal-quit`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Accepted => "accepted",
+            Self::HeldOfferStands => "held-offer-stands",
+            Self::Tie => "tie",
+            Self::BothQuit => "both-quit",
+            Self::LiteralQuit(_) => "literal-quit",
+        }
+    }
+}
+
 /// A negotiation's result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Conclusion {

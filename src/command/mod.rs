@@ -1,0 +1,114 @@
+//! The command line.
+//!
+//! A command is given its arguments and yields a [`Report`]: what to print, and whether
+//! everything was right. Printing and exit codes are left to the program.
+
+mod demo;
+mod lint;
+mod negotiate;
+mod options;
+mod replicate;
+
+use std::io;
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+use serde::Serialize;
+
+use crate::input::InputError;
+use crate::precedence::PrecedenceError;
+use crate::replicate::ReplicateError;
+
+/// Who gets the robot? Ethical decisions between interrupting users.
+///
+/// A service robot is serving one user when another interrupts. It negotiates with itself:
+/// it speaks for each user in turn, from that user's own ethical profile, disclosing one
+/// condition a round, until one side accepts or both have run out of offers.
+///
+/// Exit codes: 0 done and nothing wrong, 1 a check failed, 2 unusable input or arguments.
+#[derive(Debug, Parser)]
+#[command(name = "selfneg", version, arg_required_else_help = true)]
+pub struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Demo(demo::Demo),
+    Negotiate(negotiate::Negotiate),
+    Replicate(replicate::Replicate),
+    Lint(lint::Lint),
+}
+
+/// What a command has to say.
+#[derive(Debug, Default)]
+pub struct Report {
+    /// For standard output.
+    pub output: String,
+    /// For standard error, one line each.
+    pub warnings: Vec<String>,
+    /// Whether every check passed.
+    pub status: Status,
+}
+
+/// Whether what was checked is right.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Status {
+    /// Done, and nothing wrong.
+    #[default]
+    Passed,
+    /// A check failed.
+    Failed,
+}
+
+/// Why a command could not do its work.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CommandError {
+    /// A file is not as expected.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The users cannot be decided among.
+    #[error(transparent)]
+    Precedence(#[from] PrecedenceError),
+    /// A package cannot be rerun.
+    #[error(transparent)]
+    Replicate(#[from] ReplicateError),
+    /// The arguments do not fit together.
+    #[error("{0}")]
+    Arguments(String),
+    /// A file cannot be written.
+    #[error("{}: cannot be written: {source}", file.display())]
+    Unwritable {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A document cannot be made JSON.
+    #[error("cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+}
+
+impl Program {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// [`CommandError`] if the input or the arguments cannot be used.
+    pub fn run(&self) -> Result<Report, CommandError> {
+        match &self.command {
+            Command::Demo(demo) => demo.run(),
+            Command::Negotiate(negotiate) => negotiate.run(),
+            Command::Replicate(replicate) => replicate.run(),
+            Command::Lint(lint) => lint.run(),
+        }
+    }
+}
+
+/// One JSON document, ended by a newline.
+fn json<T: Serialize>(document: &T) -> Result<String, CommandError> {
+    let mut text = serde_json::to_string_pretty(document)?;
+    text.push('\n');
+    Ok(text)
+}

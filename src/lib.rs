@@ -1,0 +1,52 @@
+//! Selfneg: a service robot's ethical decisions between interrupting users, decided exactly
+//! as published and made to be proved, measured and audited.
+//!
+//! The engine is [`selfneg_core`]; this crate is the toolkit around it, and the program
+//! `selfneg`. To decide one case from folders of the published form:
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! use selfneg::binding::{BoundRules, GoalChoice};
+//! use selfneg::input::{Rules, User};
+//! use selfneg::precedence::{Policy, decide};
+//! use selfneg::story;
+//! use selfneg_core::Options;
+//!
+//! let mall = Path::new("examples/mall");
+//! let mut rules = BoundRules::new(Rules::read(mall)?)?;
+//! let alice = rules.bind(&User::read(&mall.join("Alice"))?, &GoalChoice::OwnFile)?;
+//! let bob = rules.bind(&User::read(&mall.join("Bob"))?, &GoalChoice::OwnFile)?;
+//!
+//! // The first user is being served, the others interrupt.
+//! let users = [alice, bob];
+//! let decision = decide(&rules, &users, Options::default(), Policy::Published)?;
+//!
+//! assert_eq!(users[decision.served].name, "Alice");
+//! assert_eq!(decision.rounds(), 2);
+//! println!("{}", story::tell(&decision, &users, &rules));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | module | job |
+//! | --- | --- |
+//! | [`input`] | read the published folders, refuse what is not as expected |
+//! | [`binding`] | names to the engine's indices, and back |
+//! | [`precedence`] | one decision among a current user and any number of interrupters |
+//! | [`transcript`], [`story`], [`record`] | what was observed, told to people, as JSON |
+//! | [`lint`] | what is legal but surely not meant |
+//! | [`mod@replicate`] | rerun the published package against its own logs |
+//! | [`demo`] | the paper's mall |
+//! | [`command`] | the command line |
+#![forbid(unsafe_code)]
+
+pub mod binding;
+pub mod command;
+pub mod demo;
+pub mod input;
+pub mod lint;
+pub mod precedence;
+pub mod record;
+pub mod replicate;
+pub mod story;
+pub mod transcript;

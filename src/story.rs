@@ -1,0 +1,178 @@
+//! A decision told to people: who offers what, what the receiver weighs, and why it ends.
+
+use std::fmt::Write as _;
+
+use selfneg_core::{Disclosure, Ending, Fallback, Outcome, Ruling, Side, TieRule};
+
+use crate::binding::{BoundRules, BoundUser};
+use crate::precedence::{Decision, HeldNegotiation, Policy};
+use crate::transcript::{Event, Round};
+
+/// Tells a decision among `users` as it happened.
+#[must_use]
+pub fn tell(decision: &Decision, users: &[BoundUser], rules: &BoundRules) -> String {
+    let teller = Teller { decision, users, rules };
+    let mut story = teller.opening();
+    for (nth, held) in decision.negotiations.iter().enumerate() {
+        story.push('\n');
+        if decision.negotiations.len() > 1 {
+            let _ = writeln!(
+                story,
+                "Negotiation {}: {} keeps the robot, or {} gets it.\n",
+                nth.saturating_add(1),
+                teller.name(held.current),
+                teller.name(held.interrupting)
+            );
+        }
+        for round in &held.rounds {
+            story.push_str(&teller.round(held, round));
+        }
+        let _ = writeln!(story, "\n{}", teller.ending(held));
+    }
+    let _ = writeln!(story, "\n{}", teller.closing());
+    story
+}
+
+struct Teller<'a> {
+    decision: &'a Decision,
+    users: &'a [BoundUser],
+    rules: &'a BoundRules,
+}
+
+impl<'a> Teller<'a> {
+    fn name(&self, user: usize) -> &'a str {
+        self.users.get(user).map_or("?", |user| user.name.as_str())
+    }
+
+    fn side(&self, held: &HeldNegotiation, side: Side) -> &'a str {
+        self.name(match side {
+            Side::Current => held.current,
+            Side::Interrupting => held.interrupting,
+        })
+    }
+
+    fn opening(&self) -> String {
+        let mut text = String::new();
+        for (nth, user) in self.users.iter().enumerate() {
+            let goal = &user.goal;
+            let _ = match nth {
+                0 => write!(text, "The robot is serving {} (goal: {goal}).", user.name),
+                _ => write!(text, " {} interrupts (goal: {goal}).", user.name),
+            };
+        }
+        let policy = match self.users.len() {
+            2 => String::new(),
+            _ => format!(", policy {}", self.decision.policy),
+        };
+        let _ = writeln!(text, "\nProtocol variant: {}{policy}", self.decision.options);
+        text
+    }
+
+    fn round(&self, held: &HeldNegotiation, round: &Round) -> String {
+        let sender = self.side(held, round.sender);
+        let receiver = self.side(held, round.sender.other());
+        let number = round.number;
+        match round.event {
+            Event::Quit => {
+                format!("Round {number:>2}  {sender} has nothing more to disclose and quits.\n")
+            }
+            Event::Offer { discloses, weighing, ruling, .. } => {
+                let what = match discloses {
+                    Disclosure::Condition(condition) => {
+                        format!("discloses \"{}\"", self.rules.condition_name(condition))
+                    }
+                    Disclosure::Willingness => "discloses being close to the end of the goal".to_owned(),
+                };
+                let ruling = match ruling {
+                    Ruling::Accept => "accepts",
+                    Ruling::Reject => "rejects",
+                    Ruling::Hold => "would accept, and first makes its own offer of this depth",
+                };
+                format!(
+                    "Round {number:>2}  {sender} {what}.\n          To {receiver} this offer is worth {}, \
+                     {receiver}'s own complete offer {}: {receiver} {ruling}.\n",
+                    weighing.value, weighing.threshold
+                )
+            }
+        }
+    }
+
+    fn ending(&self, held: &HeldNegotiation) -> String {
+        let rounds = match held.conclusion.rounds {
+            1 => "1 round".to_owned(),
+            rounds => format!("{rounds} rounds"),
+        };
+        let winner = held.conclusion.outcome.winner().map(|side| self.side(held, side));
+        let loser = held.conclusion.outcome.winner().map(|side| self.side(held, side.other()));
+        let why = match (held.conclusion.ending, winner, loser) {
+            (Ending::Accepted, Some(winner), Some(loser)) => {
+                format!("{loser} accepted {winner}'s offer")
+            }
+            (Ending::HeldOfferStands, Some(winner), Some(loser)) => {
+                format!(
+                    "{winner} rejected the reply, so {winner}'s held offer, acceptable to {loser}, stands"
+                )
+            }
+            (Ending::Tie, Some(winner), Some(loser)) => format!(
+                "each would accept the other's offer, and {loser} gains more by that than {winner} would"
+            ),
+            (Ending::Tie, ..) => match held.options.tie {
+                TieRule::Surplus => {
+                    "each would accept the other's offer, and both would gain the same by it".to_owned()
+                }
+                TieRule::Fallback | TieRule::FirstSender => {
+                    "each would accept the other's offer, and such a tie is left to the fallback".to_owned()
+                }
+            },
+            (Ending::LiteralQuit(side), ..) if held.conclusion.rounds == 1 && held.rounds_hold_no_offer() => {
+                format!("{} had nothing to offer (literal quit rule)", self.side(held, side))
+            }
+            (Ending::LiteralQuit(side), ..) => format!(
+                "{} rejected an offer as deep as its own deepest (literal quit rule)",
+                self.side(held, side)
+            ),
+            (Ending::BothQuit | Ending::Accepted | Ending::HeldOfferStands, ..) => {
+                "both ran out of offers".to_owned()
+            }
+        };
+        match held.conclusion.outcome {
+            Outcome::Agreement(side) => {
+                format!("Agreement for {} after {rounds}: {why}.", self.side(held, side))
+            }
+            Outcome::NoAgreement => format!("No agreement after {rounds}: {why}."),
+        }
+    }
+
+    fn closing(&self) -> String {
+        let served = self.name(self.decision.served);
+        let verb = if self.decision.served == 0 { "keeps" } else { "gets" };
+        if self.decision.agreement.is_some() {
+            let by = match (self.users.len(), self.decision.policy) {
+                (2, _) => "",
+                (_, Policy::Published) => ", by the published policy",
+                (_, Policy::Condorcet) => ", who beats everyone else",
+            };
+            return format!("Decision: {served} {verb} precedence{by}.");
+        }
+        let among = match self.decision.candidates.as_slice() {
+            candidates if candidates.len() == self.users.len() => String::new(),
+            candidates => {
+                let names: Vec<&str> = candidates.iter().map(|&user| self.name(user)).collect();
+                format!(", among those whom nobody outside beats ({})", names.join(", "))
+            }
+        };
+        let fallback = match self.decision.options.fallback {
+            Fallback::FirstCome => "first come, first served",
+            Fallback::Utilitarian => "whoever's goal brings all of them together the most welfare",
+        };
+        format!(
+            "Decision: nobody's offer decided it, so the fallback does: {fallback}{among}. {served} {verb} precedence."
+        )
+    }
+}
+
+impl HeldNegotiation {
+    fn rounds_hold_no_offer(&self) -> bool {
+        self.rounds.iter().all(|round| round.event == Event::Quit)
+    }
+}
