@@ -18,7 +18,7 @@ pub fn tell(decision: &Decision, users: &[BoundUser], rules: &BoundRules) -> Str
         if decision.negotiations.len() > 1 {
             let _ = writeln!(
                 story,
-                "Negotiation {}: {} keeps the robot, or {} gets it.\n",
+                "Negotiation {}: between {} and {}, who offers first.\n",
                 nth.saturating_add(1),
                 teller.name(held.current),
                 teller.name(held.interrupting)
@@ -28,6 +28,9 @@ pub fn tell(decision: &Decision, users: &[BoundUser], rules: &BoundRules) -> Str
             story.push_str(&teller.round(held, round));
         }
         let _ = writeln!(story, "\n{}", teller.ending(held));
+    }
+    if decision.negotiations.len() > 1 {
+        let _ = writeln!(story, "\nTogether: {}.", teller.together());
     }
     let _ = writeln!(story, "\n{}", teller.closing());
     story
@@ -118,7 +121,7 @@ impl<'a> Teller<'a> {
             ),
             (Ending::Tie, ..) => match held.options.tie {
                 TieRule::Surplus => {
-                    "each would accept the other's offer, and both would gain the same by it".to_owned()
+                    "each would accept the other's offer, and both would gain the same by that".to_owned()
                 }
                 TieRule::Fallback | TieRule::FirstSender => {
                     "each would accept the other's offer, and such a tie is left to the fallback".to_owned()
@@ -143,6 +146,35 @@ impl<'a> Teller<'a> {
         }
     }
 
+    /// Who beat whom, the most victorious first.
+    fn together(&self) -> String {
+        let mut victories: Vec<(usize, Vec<&str>)> = Vec::new();
+        let mut undecided = Vec::new();
+        for held in &self.decision.negotiations {
+            let Some(side) = held.conclusion.outcome.winner() else {
+                undecided.push(format!("{} and {}", self.name(held.current), self.name(held.interrupting)));
+                continue;
+            };
+            let (winner, loser) = match side {
+                Side::Current => (held.current, held.interrupting),
+                Side::Interrupting => (held.interrupting, held.current),
+            };
+            match victories.iter_mut().find(|(user, _)| *user == winner) {
+                Some((_, beaten)) => beaten.push(self.name(loser)),
+                None => victories.push((winner, vec![self.name(loser)])),
+            }
+        }
+        victories.sort_by_key(|(_, beaten)| std::cmp::Reverse(beaten.len()));
+        let mut parts: Vec<String> = victories
+            .iter()
+            .map(|(winner, beaten)| format!("{} beats {}", self.name(*winner), beaten.join(", ")))
+            .collect();
+        if !undecided.is_empty() {
+            parts.push(format!("no agreement between {}", undecided.join(", ")));
+        }
+        parts.join("; ")
+    }
+
     fn closing(&self) -> String {
         let served = self.name(self.decision.served);
         let verb = if self.decision.served == 0 { "keeps" } else { "gets" };
@@ -163,11 +195,14 @@ impl<'a> Teller<'a> {
         };
         let fallback = match self.decision.options.fallback {
             Fallback::FirstCome => "first come, first served",
-            Fallback::Utilitarian => "whoever's goal brings all of them together the most welfare",
+            Fallback::Utilitarian => "whoever's service is worth most to all of them together",
         };
-        format!(
-            "Decision: nobody's offer decided it, so the fallback does: {fallback}{among}. {served} {verb} precedence."
-        )
+        let why = match (self.users.len(), self.decision.policy) {
+            (2, _) => "nobody's offer was accepted",
+            (_, Policy::Published) => "the published policy gives nobody precedence",
+            (_, Policy::Condorcet) => "nobody beats everyone else",
+        };
+        format!("Decision: {why}, so the fallback decides: {fallback}{among}. {served} {verb} precedence.")
     }
 }
 
