@@ -82,7 +82,7 @@ impl<'a> Teller<'a> {
             Event::Offer { discloses, weighing, ruling, .. } => {
                 let what = match discloses {
                     Disclosure::Condition(condition) => {
-                        format!("discloses \"{}\"", self.rules.condition_name(condition))
+                        format!("discloses {:?}", self.rules.condition_name(condition))
                     }
                     Disclosure::Willingness => "discloses being close to the end of the goal".to_owned(),
                 };
