@@ -12,13 +12,12 @@ mod scaffold;
 use scaffold::folders::Place;
 use scaffold::program::negotiate;
 
-/// People at a clinic's reception. Their letters are Alice's conditions, Bob's and so on.
 fn told(place: &Place, users: &[&str], flags: &[&str]) -> String {
     let output = negotiate(place, users, flags).assert().code(0).get_output().clone();
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Rules with names that people use, and two users of them.
+/// Rules with names that people use, and users of them.
 struct Clinic(Place);
 
 const CONDITIONS: [(char, &str); 4] =

@@ -20,7 +20,7 @@ impl Naive {
     pub(crate) fn new(name: &str, conditions: &str, ranks: &str) -> Self {
         let ranks = ranks
             .split_whitespace()
-            .map(|one| (one.chars().next().unwrap(), one[1..].parse().unwrap()))
+            .map(|one| (one.chars().next().unwrap(), one.split_at(1).1.parse().unwrap()))
             .collect();
         Self { name: name.to_owned(), conditions: conditions.to_owned(), ranks, end_of_goal: false }
     }
@@ -46,7 +46,9 @@ pub(crate) fn negotiate(current: &Naive, interrupting: &Naive) -> (&'static str,
     let (mut told_by_current, mut told_by_interrupting) = (0, 0);
     let (mut current_quit, mut interrupting_quit) = (false, false);
     let mut interrupting_sends = true;
-    for round in 1.. {
+    let mut round = 0;
+    loop {
+        round += 1;
         if interrupting_sends {
             if told_by_interrupting == others.len() {
                 interrupting_quit = true;
@@ -76,7 +78,6 @@ pub(crate) fn negotiate(current: &Naive, interrupting: &Naive) -> (&'static str,
             !interrupting_sends
         };
     }
-    unreachable!("somebody quits")
 }
 
 /// The published policy for three users: outcome, and the rounds of the first negotiation.
