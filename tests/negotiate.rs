@@ -235,13 +235,20 @@ fn among_three_only_the_current_user_has_willingness() {
     let place = Place::of_letters();
     // Both interrupters beat A, so B and C negotiate: B is current, and close to its goal.
     place
-        .user("A", "a", "a1 b2 c2")
+        .user("A", "a", "a1 b3 c3")
         .user_with_status("B", r#"{"b": true, "end of goal": true}"#, "b1")
         .user("C", "c", "c1");
-    let decision = decided(&place, &["A", "B", "C"], &[]);
-    assert_eq!(decision["negotiations"].as_array().unwrap().len(), 3);
-    assert!(!disclosed(&decision).contains(&"end of goal"));
-    assert_eq!(decision["negotiations"][2]["rounds"], 4);
+    for flags in [&[][..], &["--willingness", "1"]] {
+        let decision = decided(&place, &["A", "B", "C"], flags);
+        assert_eq!(decision["negotiations"].as_array().unwrap().len(), 3);
+        assert!(!disclosed(&decision).contains(&"end of goal"), "{flags:?}");
+        let thresholds: Vec<u64> = (0..3)
+            .map(|nth| decision["negotiations"][nth]["transcript"][0]["threshold"].as_u64().unwrap())
+            .collect();
+        let of_a = if flags.is_empty() { 1 } else { 2 };
+        assert_eq!(thresholds, [of_a, of_a, 1], "{flags:?}");
+        assert_eq!(decision["negotiations"][2]["rounds"], 4, "{flags:?}");
+    }
 }
 
 #[test]
