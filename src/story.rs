@@ -77,19 +77,26 @@ impl<'a> Teller<'a> {
         let number = round.number;
         match round.event {
             Event::Quit => {
-                format!("Round {number:>2}  {sender} has nothing more to disclose and quits.\n")
+                let offered = held.rounds.iter().any(|earlier| {
+                    earlier.number < number && earlier.sender == round.sender && earlier.event != Event::Quit
+                });
+                let nothing = if offered { "nothing more" } else { "nothing" };
+                format!("Round {number:>2}  {sender} has {nothing} to disclose and quits.\n")
             }
             Event::Offer { discloses, weighing, ruling, .. } => {
                 let what = match discloses {
                     Disclosure::Condition(condition) => {
-                        format!("discloses \"{}\"", self.rules.condition_name(condition))
+                        format!("discloses {:?}", self.rules.condition_name(condition))
                     }
                     Disclosure::Willingness => "discloses being close to the end of the goal".to_owned(),
                 };
                 let ruling = match ruling {
+                    Ruling::Accept if held.conclusion.ending == Ending::Tie => "would accept too",
                     Ruling::Accept => "accepts",
                     Ruling::Reject => "rejects",
-                    Ruling::Hold => "would accept, and first makes its own offer of this depth",
+                    Ruling::Hold => {
+                        "would accept, but first makes an offer that discloses as many conditions"
+                    }
                 };
                 format!(
                     "Round {number:>2}  {sender} {what}.\n          To {receiver} this offer is worth {}, \
@@ -113,7 +120,7 @@ impl<'a> Teller<'a> {
             }
             (Ending::HeldOfferStands, Some(winner), Some(loser)) => {
                 format!(
-                    "{winner} rejected the reply, so {winner}'s held offer, acceptable to {loser}, stands"
+                    "{winner} rejected {loser}'s offer, so {winner}'s own, which {loser} would accept, stands"
                 )
             }
             (Ending::Tie, Some(winner), Some(loser)) => format!(
@@ -130,10 +137,13 @@ impl<'a> Teller<'a> {
             (Ending::LiteralQuit(side), ..) if held.conclusion.rounds == 1 && held.rounds_hold_no_offer() => {
                 format!("{} had nothing to offer (literal quit rule)", self.side(held, side))
             }
-            (Ending::LiteralQuit(side), ..) => format!(
-                "{} rejected an offer as deep as its own deepest (literal quit rule)",
-                self.side(held, side)
-            ),
+            (Ending::LiteralQuit(side), ..) => {
+                let quitter = self.side(held, side);
+                format!(
+                    "{quitter} rejected an offer, and none of {quitter}'s own discloses more conditions \
+                     (literal quit rule)"
+                )
+            }
             (Ending::BothQuit | Ending::Accepted | Ending::HeldOfferStands, ..) => {
                 "both ran out of offers".to_owned()
             }
@@ -179,18 +189,21 @@ impl<'a> Teller<'a> {
         let served = self.name(self.decision.served);
         let verb = if self.decision.served == 0 { "keeps" } else { "gets" };
         if self.decision.agreement.is_some() {
-            let by = match (self.users.len(), self.decision.policy) {
-                (2, _) => "",
-                (_, Policy::Published) => ", by the published policy",
-                (_, Policy::Condorcet) => ", who beats everyone else",
+            return match (self.users.len(), self.decision.policy) {
+                (2, _) => format!("Decision: {served} {verb} precedence."),
+                (_, Policy::Published) => {
+                    format!("Decision: {served} {verb} precedence, by the published policy.")
+                }
+                (_, Policy::Condorcet) => {
+                    format!("Decision: {served}, who beats everyone else, {verb} precedence.")
+                }
             };
-            return format!("Decision: {served} {verb} precedence{by}.");
         }
         let among = match self.decision.candidates.as_slice() {
             candidates if candidates.len() == self.users.len() => String::new(),
             candidates => {
                 let names: Vec<&str> = candidates.iter().map(|&user| self.name(user)).collect();
-                format!(", among those whom nobody outside beats ({})", names.join(", "))
+                format!(", among those whom nobody else beats ({})", names.join(", "))
             }
         };
         let fallback = match self.decision.options.fallback {
@@ -198,7 +211,7 @@ impl<'a> Teller<'a> {
             Fallback::Utilitarian => "whoever's service is worth most to all of them together",
         };
         let why = match (self.users.len(), self.decision.policy) {
-            (2, _) => "nobody's offer was accepted",
+            (2, _) => "there is no agreement",
             (_, Policy::Published) => "the published policy gives nobody precedence",
             (_, Policy::Condorcet) => "nobody beats everyone else",
         };
