@@ -32,7 +32,7 @@ pub fn tell(decision: &Decision, users: &[BoundUser], rules: &BoundRules) -> Str
     if decision.negotiations.len() > 1 {
         let _ = writeln!(story, "\nTogether: {}.", teller.together());
     }
-    let _ = writeln!(story, "\n{}", teller.closing());
+    let _ = writeln!(story, "\n{}\n\n{}", teller.closing(), teller.variant());
     story
 }
 
@@ -63,11 +63,7 @@ impl<'a> Teller<'a> {
                 _ => write!(text, " {} interrupts (goal: {goal}).", user.name),
             };
         }
-        let policy = match self.users.len() {
-            2 => String::new(),
-            _ => format!(", policy {}", self.decision.policy),
-        };
-        let _ = writeln!(text, "\nProtocol variant: {}{policy}", self.decision.options);
+        text.push('\n');
         text
     }
 
@@ -185,6 +181,46 @@ impl<'a> Teller<'a> {
         parts.join("; ")
     }
 
+    fn variant(&self) -> String {
+        let policy = match self.users.len() {
+            2 => String::new(),
+            _ => format!(", policy {}", self.decision.policy),
+        };
+        let willingness = match self.decision.options.willingness {
+            0 => String::new(),
+            worth => format!(
+                "; {}'s own complete offer includes {worth} for being close to the goal",
+                self.name(0)
+            ),
+        };
+        format!("Protocol variant: {}{policy}{willingness}.", self.decision.options)
+    }
+
+    /// Why the published policy looks where it does, from the current user's negotiations.
+    fn published_reason(&self) -> String {
+        let winner = |nth: usize| {
+            let held = self.decision.negotiations.get(nth)?;
+            Some(match held.conclusion.outcome.winner()? {
+                Side::Current => held.current,
+                Side::Interrupting => held.interrupting,
+            })
+        };
+        let [current, first, second] = [0, 1, 2].map(|user| self.name(user));
+        match (winner(0), winner(1)) {
+            (None, _) => format!("{current} and {first} do not agree, so {current} and {second} decide it"),
+            (_, None) => format!("{current} and {second} do not agree, so {current} and {first} decide it"),
+            (Some(0), Some(0)) => format!("{current} beats both"),
+            (Some(0), Some(winner)) | (Some(winner), Some(0)) => {
+                let winner = self.name(winner);
+                let other = if winner == first { second } else { first };
+                format!("{winner} alone beats {current}, and must beat {other} too")
+            }
+            (Some(_), Some(_)) => {
+                format!("both interrupters beat {current}, so {first} and {second} decide it")
+            }
+        }
+    }
+
     fn closing(&self) -> String {
         let served = self.name(self.decision.served);
         let verb = if self.decision.served == 0 { "keeps" } else { "gets" };
@@ -192,7 +228,7 @@ impl<'a> Teller<'a> {
             return match (self.users.len(), self.decision.policy) {
                 (2, _) => format!("Decision: {served} {verb} precedence."),
                 (_, Policy::Published) => {
-                    format!("Decision: {served} {verb} precedence, by the published policy.")
+                    format!("Decision: {}. {served} {verb} precedence.", self.published_reason())
                 }
                 (_, Policy::Condorcet) => {
                     format!("Decision: {served}, who beats everyone else, {verb} precedence.")
@@ -211,11 +247,11 @@ impl<'a> Teller<'a> {
             Fallback::Utilitarian => "whoever's service is worth most to all of them together",
         };
         let why = match (self.users.len(), self.decision.policy) {
-            (2, _) => "there is no agreement",
-            (_, Policy::Published) => "the published policy gives nobody precedence",
-            (_, Policy::Condorcet) => "nobody beats everyone else",
+            (2, _) => "there is no agreement".to_owned(),
+            (_, Policy::Published) => format!("{}: no agreement", self.published_reason()),
+            (_, Policy::Condorcet) => "nobody beats everyone else".to_owned(),
         };
-        format!("Decision: {why}, so the fallback decides: {fallback}{among}. {served} {verb} precedence.")
+        format!("Decision: {why}. So the fallback decides: {fallback}{among}. {served} {verb} precedence.")
     }
 }
 

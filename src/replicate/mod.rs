@@ -119,10 +119,11 @@ pub struct Ended {
 }
 
 impl DatasetReport {
-    /// Whether everything matches.
+    /// Whether everything matches; a ground truth that says nothing of any run does not.
     #[must_use]
     pub fn matches(&self) -> bool {
-        self.reproduces_log() && self.ground_truth.as_ref().is_none_or(|truth| truth.agree == truth.cases)
+        self.reproduces_log()
+            && self.ground_truth.as_ref().is_none_or(|truth| truth.cases > 0 && truth.agree == truth.cases)
     }
 
     /// Whether every line of the log is a run that the engine decides in the same way.
