@@ -19,6 +19,18 @@
 //! assert_eq!(counts.agreement_current + counts.agreement_interrupting + counts.no_agreement, counts.pairs);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Limits
+//!
+//! A domain has at most 16 dispositions and fewer than 2^64 users, so that every count
+//! fits 128 bits. Within that, time and memory go into the patterns of two statuses,
+//! whose number grows exponentially with the dispositions, while ranks cost a low power
+//! of their number. With ranks 1..=5, one condition each, the default variant and two
+//! cores, counting took about 0.02 s for 6 dispositions, 0.05 s for 7, 0.2 s for 8, 1 s
+//! for 10, 3 s for 12, and 15 s and 0.8 GB for 14. 16 dispositions with ranks 0..=1 took
+//! 90 s and 4 GB. The published activation (ten conditions, six dispositions) took 0.3 s.
+//! [`Detail::ByPattern`] costs an engine run for each of its many classes: 0.4 s for 6
+//! dispositions, 2 s for 7, 9 s for 8.
 
 mod check;
 mod classes;

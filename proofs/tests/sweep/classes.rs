@@ -89,7 +89,7 @@ fn by_pattern_splits_the_merged_classes() {
 fn large_domains() -> [Domain; 4] {
     [
         Domain::one_to_one(6, 1..=5).unwrap(),
-        Domain::one_to_one(4, 0..=20).unwrap(),
+        Domain::one_to_one(4, 0..=12).unwrap(),
         Domain::published(1..=3).unwrap(),
         Domain::many_to_one(&[2, 3, 2], 0..=6).unwrap(),
     ]
