@@ -1,4 +1,9 @@
 //! What an observer sees of a run, and that seeing it changes nothing.
+#![allow(
+    clippy::indexing_slicing,
+    clippy::unwrap_used,
+    reason = "clippy looks for tests only in functions marked so"
+)]
 
 mod naive;
 mod situation;

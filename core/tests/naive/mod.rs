@@ -4,7 +4,7 @@
 #![allow(
     clippy::expect_used,
     clippy::unreachable,
-    reason = "clippy does not see that this is a test's module"
+    reason = "clippy looks for tests only in functions marked so"
 )]
 
 use std::collections::BTreeSet;

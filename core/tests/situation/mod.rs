@@ -1,7 +1,7 @@
 //! Two users and their rules as owned lists, how to draw them at random, and how to hand
 //! them to the engine.
 #![allow(dead_code, reason = "each test file takes the part it needs")]
-#![allow(clippy::unwrap_used, reason = "clippy does not see that this is a test's module")]
+#![allow(clippy::unwrap_used, reason = "clippy looks for tests only in functions marked so")]
 
 use std::collections::BTreeSet;
 
