@@ -125,6 +125,7 @@ macro_rules! can_be_printed {
             #[allow(dead_code, reason = "used for a type that has `Debug`")]
             const DEBUG: bool = true;
         }
+        #[allow(dead_code, reason = "used for a type that has none")]
         trait Otherwise {
             const DEBUG: bool = false;
         }
