@@ -52,9 +52,7 @@ impl<'a> OpenUser<'a> {
     pub const fn without_last(&self) -> Option<Self> {
         match self.conditions.split_last() {
             Some((_, before)) => match Status::new(before) {
-                Ok(status) => {
-                    Some(Self { ranks: self.ranks, conditions: before, goal: self.goal, status })
-                }
+                Ok(status) => Some(Self { ranks: self.ranks, conditions: before, goal: self.goal, status }),
                 Err(_) => None,
             },
             None => None,

@@ -1,8 +1,13 @@
 //! Users as plain data that outlives the search that found them.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use selfneg_core::{Activation, Condition, Disposition, Options, Rank, Side};
 
 use crate::case::{OpenCase, OpenUser};
+use crate::engine::Engine;
+use crate::property::{Judgement, Property, Second, Trial};
+use crate::transcript::{Memory, Round};
 
 /// One user's data.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -82,4 +87,60 @@ pub struct Counterexample {
     pub altered: Option<Altered>,
     /// The variant.
     pub options: Options,
+}
+
+impl Counterexample {
+    /// What the case says of `property` with `engine` doing the negotiating. It is vacuous
+    /// if it is not a case of two users, or one that `selfneg_core` refuses.
+    pub fn judge<E: Engine>(&self, property: Property, engine: &E) -> Judgement {
+        let [current, interrupting] = self.users.as_slice() else { return Judgement::Vacuous };
+        let case = OwnedCase {
+            activation: self.activation.clone(),
+            current: current.clone(),
+            interrupting: interrupting.clone(),
+        };
+        let mut second = case.clone();
+        let mut side = Side::Current;
+        if let Some(altered) = &self.altered {
+            match altered.index {
+                0 => second.current = altered.user.clone(),
+                _ => {
+                    second.interrupting = altered.user.clone();
+                    side = Side::Interrupting;
+                }
+            }
+        }
+        judge(property, engine, &case, (&second, side), &self.options)
+    }
+}
+
+/// What a case, with a second one that differs on the given side, says of `property`.
+pub(crate) fn judge<E: Engine>(
+    property: Property,
+    engine: &E,
+    case: &OwnedCase,
+    (second, side): (&OwnedCase, Side),
+    options: &Options,
+) -> Judgement {
+    let conditions = |case: &OwnedCase| case.current.conditions.len() + case.interrupting.conditions.len();
+    let mut first_room = vec![Round::BLANK; conditions(case) + 4];
+    let mut second_room = vec![Round::BLANK; conditions(second) + 4];
+    let mut memory = Memory { first: &mut first_room, second: &mut second_room };
+    let judgement = case.open(|case| {
+        second.open(|second| {
+            let trial = Trial { case: *case, second: Second { case: *second, side }, options: *options };
+            guarded(property, engine, &trial, &mut memory)
+        })
+    });
+    judgement.flatten().unwrap_or(Judgement::Vacuous)
+}
+
+/// A panic refutes a property as any other wrong answer does.
+pub(crate) fn guarded<E: Engine>(
+    property: Property,
+    engine: &E,
+    trial: &Trial<'_>,
+    memory: &mut Memory<'_>,
+) -> Judgement {
+    catch_unwind(AssertUnwindSafe(|| property.check(engine, trial, memory))).unwrap_or(Judgement::Fails)
 }

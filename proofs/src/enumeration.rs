@@ -1,13 +1,11 @@
 //! Literal enumeration: every pair of users of a small domain, with every alteration
 //! within the domain, in no cleverer way than one after the other.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
 use rayon::prelude::*;
-use selfneg_core::{Activation, Condition, Disposition, Options, Outcome, Rank, Side};
+use selfneg_core::{Activation, Aggregation, Condition, Disposition, Options, Outcome, Rank, Side};
 
 use crate::case::{OpenCase, OpenUser};
-use crate::counterexample::{Altered, Counterexample, OwnedUser};
+use crate::counterexample::{Altered, Counterexample, OwnedUser, guarded};
 use crate::engine::Engine;
 use crate::property::policy::{Bilateral, Policy, PolicyProperty};
 use crate::property::{Alteration, Judgement, Property, Second, Trial};
@@ -40,6 +38,7 @@ pub struct Domain {
 const D0: Disposition = Disposition(0);
 const D1: Disposition = Disposition(1);
 const D2: Disposition = Disposition(2);
+const D3: Disposition = Disposition(3);
 
 impl Domain {
     /// Three dispositions with one condition each: 216 users. A rank of 3 exceeds every
@@ -53,12 +52,18 @@ impl Domain {
     };
 
     /// The same with ranks of 0 and 1: 64 users.
-    pub const THREE_LOW: Self =
-        Self { name: "3 dispositions, one condition each, ranks {0, 1}, index order", ranks: &[0, 1], ..Self::THREE };
+    pub const THREE_LOW: Self = Self {
+        name: "3 dispositions, one condition each, ranks {0, 1}, index order",
+        ranks: &[0, 1],
+        ..Self::THREE
+    };
 
     /// The same with ranks of 0 and 3: 64 users.
-    pub const THREE_HIGH: Self =
-        Self { name: "3 dispositions, one condition each, ranks {0, 3}, index order", ranks: &[0, 3], ..Self::THREE };
+    pub const THREE_HIGH: Self = Self {
+        name: "3 dispositions, one condition each, ranks {0, 3}, index order",
+        ranks: &[0, 3],
+        ..Self::THREE
+    };
 
     /// The same with ranks of 0 and 3 and every order of disclosure: 128 users.
     pub const THREE_ORDERED: Self = Self {
@@ -112,10 +117,25 @@ impl Domain {
         ..Self::SHARED
     };
 
+    /// Three conditions, two of which share one of the dispositions that each activates:
+    /// 128 users. [`SHARED`](Self::SHARED) does not refute `sorted-hide-proofness`.
+    pub const WOVEN: Self = Self {
+        name: "4 dispositions, three conditions (two share one of two), ranks {0, 3}, index order",
+        dispositions: 4,
+        activation: &[&[D0, D1], &[D1, D2], &[D3]],
+        ranks: &[0, 3],
+        orders: Orders::Index,
+    };
+
     /// The domains over which a property is enumerated by default. Together they
     /// refute it wherever it is expected to fail.
     #[must_use]
-    pub const fn of(property: Property) -> &'static [Self] {
+    pub const fn of(property: Property, options: &Options) -> &'static [Self] {
+        if matches!(property, Property::SortedHideProofness)
+            && matches!(options.aggregation, Aggregation::PerDisposition)
+        {
+            return &[Self::WOVEN];
+        }
         match property.alteration() {
             Alteration::None | Alteration::Copied => &[Self::THREE, Self::SHARED, Self::TWO_WIDE],
             Alteration::Hidden => &[Self::THREE_LOW, Self::THREE_HIGH, Self::SHARED_HIGH],
@@ -253,10 +273,18 @@ pub fn enumerate<E: Engine + Sync>(
     domains: &[Domain],
     options: &Options,
 ) -> Tally {
-    domains.iter().map(|domain| enumerate_one(property, engine, domain, options)).fold(Tally::default(), Tally::and)
+    domains
+        .iter()
+        .map(|domain| enumerate_one(property, engine, domain, options))
+        .fold(Tally::default(), Tally::and)
 }
 
-fn enumerate_one<E: Engine + Sync>(property: Property, engine: &E, domain: &Domain, options: &Options) -> Tally {
+fn enumerate_one<E: Engine + Sync>(
+    property: Property,
+    engine: &E,
+    domain: &Domain,
+    options: &Options,
+) -> Tally {
     let owned = domain.users();
     let copies = owned.clone();
     let (Ok(activation), Some(users), Some(copied)) = (
@@ -317,16 +345,6 @@ fn enumerate_one<E: Engine + Sync>(property: Property, engine: &E, domain: &Doma
     }
 }
 
-/// A panic refutes a property as any other wrong answer does.
-pub(crate) fn guarded<E: Engine>(
-    property: Property,
-    engine: &E,
-    trial: &Trial<'_>,
-    memory: &mut Memory<'_>,
-) -> Judgement {
-    catch_unwind(AssertUnwindSafe(|| property.check(engine, trial, memory))).unwrap_or(Judgement::Fails)
-}
-
 fn counterexample(
     property: Property,
     domain: &Domain,
@@ -374,7 +392,12 @@ fn alternatives(alteration: Alteration, users: &[OwnedUser]) -> Vec<Vec<usize>> 
     users
         .iter()
         .map(|before| {
-            users.iter().enumerate().filter(|(_, after)| fits(before, after)).map(|(index, _)| index).collect()
+            users
+                .iter()
+                .enumerate()
+                .filter(|(_, after)| fits(before, after))
+                .map(|(index, _)| index)
+                .collect()
         })
         .collect()
 }
@@ -387,7 +410,9 @@ pub fn outcome_triples() -> Vec<Bilateral> {
         [Outcome::Agreement(Side::Current), Outcome::Agreement(Side::Interrupting), Outcome::NoAgreement];
     OUTCOMES
         .iter()
-        .flat_map(|&ab| OUTCOMES.iter().flat_map(move |&ac| OUTCOMES.iter().map(move |&bc| Bilateral { ab, ac, bc })))
+        .flat_map(|&ab| {
+            OUTCOMES.iter().flat_map(move |&ac| OUTCOMES.iter().map(move |&bc| Bilateral { ab, ac, bc }))
+        })
         .collect()
 }
 

@@ -143,7 +143,7 @@ pub struct Acceptance {
     pub surplus: u64,
 }
 
-/// k_X: the least depth at which the other user accepts the offer of the user on `side`,
+/// `k_X`: the least depth at which the other user accepts the offer of the user on `side`,
 /// if there is one.
 #[must_use]
 pub fn acceptance(case: &OpenCase<'_>, options: &Options, side: Side) -> Option<Acceptance> {
@@ -166,7 +166,8 @@ pub fn acceptance(case: &OpenCase<'_>, options: &Options, side: Side) -> Option<
 /// Whether each user would accept the other's complete offer.
 #[must_use]
 pub fn mutual_deference(case: &OpenCase<'_>, options: &Options) -> bool {
-    acceptance(case, options, Side::Current).is_some() && acceptance(case, options, Side::Interrupting).is_some()
+    acceptance(case, options, Side::Current).is_some()
+        && acceptance(case, options, Side::Interrupting).is_some()
 }
 
 /// W: the ethical impact of the complete offer of the user on `side`, summed over both

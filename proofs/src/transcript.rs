@@ -158,14 +158,7 @@ impl Observer for Recorder<'_> {
     }
 
     fn quit(&mut self, round: u32, sender: Side) {
-        self.push(Round {
-            number: round,
-            sender,
-            depth: 0,
-            discloses: None,
-            weighing: None,
-            ruling: None,
-        });
+        self.push(Round { number: round, sender, depth: 0, discloses: None, weighing: None, ruling: None });
     }
 
     fn concluded(&mut self, conclusion: Conclusion) {

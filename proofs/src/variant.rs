@@ -12,8 +12,13 @@ pub fn variants() -> impl Iterator<Item = Options> {
         Aggregation::ALL.iter().flat_map(move |&aggregation| {
             TieRule::ALL.iter().flat_map(move |&tie| {
                 Fallback::ALL.iter().flat_map(move |&fallback| {
-                    (0..=MOST_WILLINGNESS)
-                        .map(move |willingness| Options { quit, aggregation, tie, fallback, willingness })
+                    (0..=MOST_WILLINGNESS).map(move |willingness| Options {
+                        quit,
+                        aggregation,
+                        tie,
+                        fallback,
+                        willingness,
+                    })
                 })
             })
         })

@@ -45,7 +45,8 @@ pub(super) fn same_goal(a: &OpenUser<'_>, b: &OpenUser<'_>) -> bool {
 }
 
 pub(super) fn same_conditions(a: &OpenUser<'_>, b: &OpenUser<'_>) -> bool {
-    a.conditions().len() == b.conditions().len() && same_prefix(a.conditions(), b.conditions(), a.conditions().len())
+    a.conditions().len() == b.conditions().len()
+        && same_prefix(a.conditions(), b.conditions(), a.conditions().len())
 }
 
 pub(super) fn same_user(a: &OpenUser<'_>, b: &OpenUser<'_>) -> bool {
@@ -60,7 +61,9 @@ pub(super) fn decision_locality<E: Engine>(
     let side = trial.second.side;
     let before = trial.case.user(side);
     let after = trial.second.case.user(side);
-    if !same_user(trial.case.user(side.other()), trial.second.case.user(side.other())) || !same_goal(before, after) {
+    if !same_user(trial.case.user(side.other()), trial.second.case.user(side.other()))
+        || !same_goal(before, after)
+    {
         return Judgement::Vacuous;
     }
     let mut first = Recorder::new(memory.first);

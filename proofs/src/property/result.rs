@@ -25,7 +25,9 @@ pub fn closed_form(case: &OpenCase<'_>, options: &Options) -> Outcome {
     let interrupting = measure::offers(case, options, Side::Interrupting);
     let (deepest_current, deepest_interrupting) = match options.quit {
         QuitRule::Exhausted => (current, interrupting),
-        QuitRule::Literal => (least(current.saturating_sub(1), interrupting), least(interrupting, most(current, 1))),
+        QuitRule::Literal => {
+            (least(current.saturating_sub(1), interrupting), least(interrupting, most(current, 1)))
+        }
     };
     let made_by_current = within(by_current, deepest_current);
     let made_by_interrupting = within(by_interrupting, deepest_interrupting);
@@ -97,9 +99,9 @@ pub(super) fn role_symmetry_exception<E: Engine>(
     let by_current = measure::acceptance(&trial.case, &trial.options, Side::Current);
     let by_interrupting = measure::acceptance(&trial.case, &trial.options, Side::Interrupting);
     match (by_current, by_interrupting) {
-        (Some(c), Some(i)) if c.depth == i.depth => Judgement::from_bool(
-            straight == Some(Side::Interrupting) && swapped == Some(Side::Current),
-        ),
+        (Some(c), Some(i)) if c.depth == i.depth => {
+            Judgement::from_bool(straight == Some(Side::Interrupting) && swapped == Some(Side::Current))
+        }
         _ if straight.is_none() && swapped.is_none() => Judgement::Vacuous,
         _ => Judgement::from_bool(straight == swapped),
     }

@@ -11,7 +11,9 @@ use crate::transcript::{Memory, Recorder};
 
 pub(super) fn determinism<E: Engine>(engine: &E, trial: &Trial<'_>, memory: &mut Memory<'_>) -> Judgement {
     let copy = &trial.second.case;
-    if !same_user(&trial.case.current, &copy.current) || !same_user(&trial.case.interrupting, &copy.interrupting) {
+    if !same_user(&trial.case.current, &copy.current)
+        || !same_user(&trial.case.interrupting, &copy.interrupting)
+    {
         return Judgement::Vacuous;
     }
     let mut first = Recorder::new(memory.first);
