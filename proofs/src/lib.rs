@@ -7,6 +7,7 @@ pub mod engine;
 #[cfg(not(kani))]
 pub mod enumeration;
 pub mod expected;
+pub mod harness;
 pub mod measure;
 pub mod property;
 #[cfg(not(kani))]

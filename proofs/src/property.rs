@@ -149,8 +149,8 @@ properties! {
         "A user whose complete offer both profiles put strictly above the other's is served.",
         vacuous "the profiles do not both put the same offer strictly above the other";
     OneSidedOptimality = "one-sided-optimality", None, result::one_sided_optimality,
-        "An agreement whose loser would accept the winner's complete offer, and the winner not the loser's, maximises welfare.",
-        vacuous "no agreement, or each would accept the other's complete offer";
+        "When exactly one user would accept the other's complete offer, an agreement maximises welfare.",
+        vacuous "no agreement, or none or each would accept the other's complete offer";
     DecisionLocality = "decision-locality", Replaced, closeness::decision_locality,
         "A verdict, and the totals behind it, depend on the receiver's data and the disclosed offer only: nothing else of the sender changes a bit of them.",
         vacuous "the two runs have no offer in common, or the second case differs on the other side too";

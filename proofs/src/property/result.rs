@@ -130,7 +130,7 @@ pub(super) fn one_sided_optimality<E: Engine>(
     let outcome = engine.negotiate(&trial.case, &trial.options, &mut ()).outcome;
     let Some(winner) = outcome.winner() else { return Judgement::Vacuous };
     let accepts = |side| measure::acceptance(&trial.case, &trial.options, side).is_some();
-    if !accepts(winner) || accepts(winner.other()) {
+    if accepts(Side::Current) == accepts(Side::Interrupting) {
         return Judgement::Vacuous;
     }
     let welfare = |side| measure::welfare(&trial.case, trial.options.aggregation, side);
