@@ -8,6 +8,8 @@ pub mod engine;
 pub mod enumeration;
 pub mod expected;
 pub mod harness;
+#[cfg(not(kani))]
+pub mod kani_log;
 pub mod measure;
 pub mod property;
 #[cfg(not(kani))]

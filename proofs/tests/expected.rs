@@ -63,10 +63,12 @@ fn large_random_users_bear_the_table_out() {
 #[test]
 fn the_published_policy_is_as_expected() {
     assert_eq!(outcome_triples().len(), 27);
+    let domain = Domain { name: "3 users of 2 dispositions, ranks {0, 3}", ranks: &[0, 3], ..Domain::TWO };
     for &property in PolicyProperty::ALL {
-        let domain = Domain { name: "2 dispositions, ranks {0, 1}", ranks: &[0, 1], ..Domain::TWO };
-        let report = verify_policy(property, &Default::default(), &Published, &Core, &domain);
-        assert!(report.is_as_expected(), "{report:?}");
+        for options in variants().filter(|options| options.fallback == Fallback::FirstCome) {
+            let report = verify_policy(property, &options, &Published, &Core, &domain);
+            assert!(report.is_as_expected(), "{property} under {options}: {report:?}");
+        }
     }
 }
 

@@ -17,7 +17,7 @@ impl Source for Random {
         let mut mixed = self.state;
         mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        u8::try_from((mixed ^ (mixed >> 31)) % u64::from(bound)).unwrap()
+        u8::try_from((mixed ^ (mixed >> 31)) % u64::from(bound)).unwrap_or(0)
     }
 
     fn covered(&mut self, what: &'static str) {
