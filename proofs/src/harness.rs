@@ -12,11 +12,12 @@
 //! instead of slices of symbolic length, ranks below [`RANKS`], `unwind` one more than the
 //! longest loop.
 //!
-//! Two layouts bound the users. [`APART`]: up to three conditions a side, no disposition in
+//! Two layouts bound the users. *Apart*: up to three conditions a side, no disposition in
 //! common. Users who share dispositions with one condition each are among its users: what
 //! a run depends on is how much each offer is worth in the other's eyes and the own total,
-//! and sharing only makes some of these equal. [`SHARED`]: conditions in common, and several that
-//! activate one disposition, which tells the aggregations apart.
+//! and sharing only makes some of these equal. *Shared*: conditions in common, and several
+//! that activate one disposition, which tells the aggregations apart. Two-run properties
+//! use one and two conditions a side of the first.
 
 mod body;
 pub mod witness;

@@ -2,15 +2,16 @@
 
 use std::time::{Duration, Instant};
 
-use selfneg_core::Options;
+use selfneg_core::{Fallback, Options};
 
 use crate::counterexample::Counterexample;
 use crate::engine::Engine;
 use crate::enumeration::{Domain, enumerate, enumerate_policy, outcome_triples};
-use crate::expected::{Verdict, expected, expected_of_policy};
+use crate::expected::{Verdict, expected, expected_of_policy, looks_at_fallback};
 use crate::property::policy::{Policy, PolicyProperty};
 use crate::property::{Judgement, Property};
 use crate::random;
+use crate::variant::variants;
 
 /// A way of checking a property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,6 +91,29 @@ pub fn verify<E: Engine + Sync>(property: Property, options: &Options, engine: &
             }
         }
     }
+}
+
+/// Checks `property` under every variant, in the way of `method`. Variants that differ in
+/// what the property does not look at ([`looks_at_fallback`]) share one run.
+pub fn verify_every_variant<E: Engine + Sync>(property: Property, engine: &E, method: Method) -> Vec<Report> {
+    let mut reports: Vec<Report> = Vec::new();
+    for options in variants() {
+        let shared = Options { fallback: Fallback::FirstCome, ..options };
+        let before = match looks_at_fallback(property) {
+            true => None,
+            false => reports.iter().find(|report| report.options == shared).cloned(),
+        };
+        reports.push(match before {
+            Some(report) => Report {
+                options,
+                counterexample: report.counterexample.map(|found| Counterexample { options, ..found }),
+                time: Duration::ZERO,
+                ..report
+            },
+            None => verify(property, &options, engine, method),
+        });
+    }
+    reports
 }
 
 /// Checks `property` under `options` on every case of `domains`.

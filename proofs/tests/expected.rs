@@ -9,7 +9,7 @@ use selfneg_proofs::expected::{Verdict, expected, looks_at_fallback};
 use selfneg_proofs::harness::witness::{WITNESSES, refuted};
 use selfneg_proofs::property::policy::{PolicyProperty, Published};
 use selfneg_proofs::property::{Alteration, Judgement, Property};
-use selfneg_proofs::report::{Method, verify, verify_over, verify_policy};
+use selfneg_proofs::report::{Method, verify, verify_every_variant, verify_over, verify_policy};
 use selfneg_proofs::variant::variants;
 
 fn small(property: Property) -> &'static [Domain] {
@@ -69,6 +69,18 @@ fn the_published_policy_is_as_expected() {
             let report = verify_policy(property, &options, &Published, &Core, &domain);
             assert!(report.is_as_expected(), "{property} under {options}: {report:?}");
         }
+    }
+}
+
+#[test]
+fn variants_that_share_a_run_say_so_of_themselves() {
+    let method = Method::Random { cases: 200, seed: 1 };
+    let reports = verify_every_variant(Property::RoleSymmetry, &Core, method);
+    assert!(reports.iter().map(|report| report.options).eq(variants()));
+    for report in &reports {
+        assert_eq!(report.expected, expected(Property::RoleSymmetry, &report.options));
+        assert!(report.counterexample.as_ref().is_none_or(|found| found.options == report.options));
+        assert!(report.is_as_expected());
     }
 }
 
