@@ -5,15 +5,15 @@
 //! whether the case bears it out. Kani, literal enumeration and random search call the
 //! same functions.
 
-mod closeness;
 mod course;
 mod influence;
+mod locality;
 mod result;
 mod soundness;
 
 pub mod policy;
 
-pub use closeness::Locality;
+pub use locality::Locality;
 pub use result::closed_form;
 
 use selfneg_core::{Options, Side};
@@ -151,10 +151,10 @@ properties! {
     OneSidedOptimality = "one-sided-optimality", None, result::one_sided_optimality,
         "When exactly one user would accept the other's complete offer, an agreement maximises welfare.",
         vacuous "no agreement, or none or each would accept the other's complete offer";
-    DecisionLocality = "decision-locality", Replaced, closeness::decision_locality,
+    DecisionLocality = "decision-locality", Replaced, locality::decision_locality,
         "A verdict, and the totals behind it, depend on the receiver's data and the disclosed offer only: nothing else of the sender changes a bit of them.",
         vacuous "the two runs have no offer in common, or the second case differs on the other side too";
-    TranscriptLocality = "transcript-locality", Undisclosed, closeness::transcript_locality,
+    TranscriptLocality = "transcript-locality", Undisclosed, locality::transcript_locality,
         "Replacing what a user has not disclosed, its own total unchanged, leaves the transcript identical; nothing may be added to a user who had quit, under a tie rule that holds offers nothing to a user who had no offer of a depth at which the other's was accepted, and under the literal quit rule the number of conditions must stay.",
         vacuous "the second case is not such a replacement";
     BoundedDisclosure = "bounded-disclosure", None, course::bounded_disclosure,

@@ -2,7 +2,7 @@
 
 use selfneg_core::{Condition, Side};
 
-use super::closeness::{same_conditions, same_goal, same_ranks, same_user};
+use super::locality::{same_conditions, same_goal, same_ranks, same_user};
 use crate::case::{OpenCase, OpenUser};
 use crate::engine::Engine;
 use crate::measure;

@@ -2,7 +2,7 @@
 
 use selfneg_core::{Disclosure, Observer, Options, Side, Weighing};
 
-use super::closeness::same_user;
+use super::locality::same_user;
 use crate::case::OpenCase;
 use crate::engine::Engine;
 use crate::measure;
