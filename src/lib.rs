@@ -36,6 +36,7 @@
 //! | [`transcript`], [`story`], [`record`] | what was observed, told to people, as JSON |
 //! | [`lint`] | what is legal but surely not meant |
 //! | [`mod@replicate`] | rerun the published package against its own logs |
+//! | [`mod@verify`] | every property under every variant, against the expected verdicts |
 //! | [`demo`] | the paper's mall |
 //! | [`command`] | the command line |
 #![forbid(unsafe_code)]
@@ -50,3 +51,4 @@ pub mod record;
 pub mod replicate;
 pub mod story;
 pub mod transcript;
+pub mod verify;

@@ -2,15 +2,17 @@
 
 use std::time::{Duration, Instant};
 
-use selfneg_core::{Fallback, Options};
+use selfneg_core::{Fallback, Options, Side};
 
-use crate::counterexample::Counterexample;
+use crate::counterexample::{Counterexample, guarded};
 use crate::engine::Engine;
 use crate::enumeration::{Domain, enumerate, enumerate_policy, outcome_triples};
-use crate::expected::{Verdict, expected, expected_of_policy, looks_at_fallback};
+use crate::expected::{Verdict, expected, looks_at_fallback};
 use crate::property::policy::{Policy, PolicyProperty};
-use crate::property::{Judgement, Property};
+use crate::property::{Judgement, Property, Second, Trial};
 use crate::random;
+use crate::sweep::{self, Detail, SweepError};
+use crate::transcript::Memory;
 use crate::variant::variants;
 
 /// A way of checking a property.
@@ -38,7 +40,7 @@ pub struct Report {
     pub verdict: Verdict,
     /// What the table expects.
     pub expected: Verdict,
-    /// `enumeration`, `random` or `outcomes`.
+    /// `sweep`, `enumeration`, `random` or `outcomes`.
     pub method: &'static str,
     /// Over what.
     pub domain: String,
@@ -141,22 +143,108 @@ pub fn verify_over<E: Engine + Sync>(
     }
 }
 
+/// Checks every property of `properties` that a sweep may check ([`is_swept`]), under every
+/// variant, on all pairs of `domain`. Variants that differ in what a property does not look
+/// at share their cases.
+///
+/// # Errors
+/// [`SweepError`], none of which a correct reduction yields.
+pub fn verify_swept<E: Engine + Sync>(
+    properties: &[Property],
+    engine: &E,
+    domain: &sweep::Domain,
+    progress: &(dyn Fn(sweep::Progress) + Sync),
+) -> Result<Vec<Report>, SweepError> {
+    let name = domain.to_string();
+    let mut asked: Vec<(Property, Options)> = Vec::new();
+    let mut checks = Vec::new();
+    for &property in properties.iter().filter(|&&property| is_swept(property)) {
+        for options in variants() {
+            let judge = move |class: &sweep::Class<'_>, options: &Options| {
+                let Ok(case) = class.pair.open(class.case.activation) else { return Judgement::Fails };
+                let second = Second { case, side: Side::Current };
+                let trial = Trial { case, second, options: *options };
+                let mut memory = Memory { first: &mut [], second: &mut [] };
+                guarded(property, engine, &trial, &mut memory)
+            };
+            if looks_at_fallback(property) || options.fallback == Fallback::FirstCome {
+                checks.push(sweep::Check { property: judge, options });
+                asked.push((property, options));
+            }
+        }
+    }
+    let start = Instant::now();
+    let checked = sweep::check(domain, &checks, Detail::Merged, progress)?;
+    // One sweep answers all, so its time is spread over them.
+    let time = start.elapsed().checked_div(u32::try_from(asked.len()).unwrap_or(u32::MAX));
+    let mut reports = Vec::new();
+    for ((property, options), checked) in asked.into_iter().zip(checked) {
+        let fallbacks: &[Fallback] =
+            if looks_at_fallback(property) { &[options.fallback] } else { Fallback::ALL };
+        for &fallback in fallbacks {
+            let options = Options { fallback, ..options };
+            let counterexample = checked.counterexample.as_ref().map(|pair| Counterexample {
+                activation: domain.rows().iter().map(|row| row.to_vec()).collect(),
+                users: vec![pair.current.owned(), pair.interrupting.owned()],
+                altered: None,
+                options,
+            });
+            reports.push(Report {
+                property: property.name(),
+                options,
+                verdict: verdict(counterexample.as_ref()),
+                expected: expected(property, &options),
+                method: "sweep",
+                domain: name.clone(),
+                cases: checked.pairs,
+                nonvacuous: checked.nonvacuous,
+                failing: Some(checked.failing),
+                counterexample,
+                time: time.unwrap_or_default(),
+            });
+        }
+    }
+    Ok(reports)
+}
+
+/// Whether a property depends on nothing but what all pairs of a class of the sweep share
+/// ([`sweep::Grain`]): then one pair of each class stands for all of it.
+///
+/// What looks at single totals or at the transcript (`no-overflow`, `bounded-disclosure`),
+/// or compares with altered users (hiding, another order, a further condition), does not.
+#[must_use]
+pub const fn is_swept(property: Property) -> bool {
+    matches!(
+        property,
+        Property::Termination
+            | Property::ExactTermination
+            | Property::ClosedForm
+            | Property::RoleSymmetry
+            | Property::RoleSymmetryException
+            | Property::Unanimity
+            | Property::OneSidedOptimality
+    )
+}
+
 /// Checks a property of `policy` on every triple of outcomes and on every three users of
 /// `domain`. A property that holds, holds for the triples; one that fails is refuted by
 /// three users.
+///
+/// `expected` is what the table says, for the published policy
+/// [`expected_of_policy`](crate::expected::expected_of_policy).
 pub fn verify_policy<P: Policy + Sync, E: Engine + Sync>(
     property: PolicyProperty,
     options: &Options,
     policy: &P,
     engine: &E,
     domain: &Domain,
+    expected: Verdict,
 ) -> Report {
     let start = Instant::now();
     let triples = outcome_triples();
     let judgements: Vec<Judgement> = triples.iter().map(|&triple| property.check(policy, triple)).collect();
     let count = |which: fn(&Judgement) -> bool| judgements.iter().filter(|j| which(j)).map(|_| 1_u128).sum();
     let failing: u128 = count(|&judgement| judgement == Judgement::Fails);
-    let expected = expected_of_policy(property, options);
     if failing == 0 {
         return Report {
             property: property.name(),

@@ -13,6 +13,7 @@ use selfneg_core::{
 use selfneg_proofs::case::OpenCase;
 use selfneg_proofs::engine::{Core, Engine};
 use selfneg_proofs::enumeration::Domain;
+use selfneg_proofs::expected::expected_of_policy;
 use selfneg_proofs::measure;
 use selfneg_proofs::property::Property;
 use selfneg_proofs::property::policy::{Bilateral, Policy, PolicyProperty, Published};
@@ -400,9 +401,17 @@ impl<F: Fn(Bilateral) -> Option<Arrival>> Policy for Chooses<F> {
 
 fn kills_policy<P: Policy + Sync>(property: PolicyProperty, double: &P) {
     let domain = Domain::THREE_LOW;
-    let real = verify_policy(property, &default(), &Published, &Core, &domain);
+    let real = verify_policy(
+        property,
+        &default(),
+        &Published,
+        &Core,
+        &domain,
+        expected_of_policy(property, &default()),
+    );
     assert!(real.is_as_expected(), "the published policy: {real:?}");
-    let broken = verify_policy(property, &default(), double, &Core, &domain);
+    let broken =
+        verify_policy(property, &default(), double, &Core, &domain, expected_of_policy(property, &default()));
     assert_ne!(broken.verdict, broken.expected, "{property} does not notice the double");
 }
 

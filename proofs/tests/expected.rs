@@ -5,7 +5,7 @@
 use selfneg_core::Fallback;
 use selfneg_proofs::engine::Core;
 use selfneg_proofs::enumeration::{Domain, outcome_triples};
-use selfneg_proofs::expected::{Verdict, expected, looks_at_fallback};
+use selfneg_proofs::expected::{Verdict, expected, expected_of_policy, looks_at_fallback};
 use selfneg_proofs::harness::witness::{WITNESSES, refuted};
 use selfneg_proofs::property::policy::{PolicyProperty, Published};
 use selfneg_proofs::property::{Alteration, Judgement, Property};
@@ -66,7 +66,14 @@ fn the_published_policy_is_as_expected() {
     let domain = Domain { name: "3 users of 2 dispositions, ranks {0, 3}", ranks: &[0, 3], ..Domain::TWO };
     for &property in PolicyProperty::ALL {
         for options in variants().filter(|options| options.fallback == Fallback::FirstCome) {
-            let report = verify_policy(property, &options, &Published, &Core, &domain);
+            let report = verify_policy(
+                property,
+                &options,
+                &Published,
+                &Core,
+                &domain,
+                expected_of_policy(property, &options),
+            );
             assert!(report.is_as_expected(), "{property} under {options}: {report:?}");
         }
     }

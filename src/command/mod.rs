@@ -8,6 +8,7 @@ mod lint;
 mod negotiate;
 mod options;
 mod replicate;
+mod verify;
 
 use std::io;
 use std::path::PathBuf;
@@ -18,6 +19,7 @@ use serde::Serialize;
 use crate::input::InputError;
 use crate::precedence::PrecedenceError;
 use crate::replicate::ReplicateError;
+use crate::verify::VerifyError;
 
 /// Who gets the robot? Ethical decisions between interrupting users.
 ///
@@ -39,6 +41,7 @@ enum Command {
     Negotiate(negotiate::Negotiate),
     Replicate(replicate::Replicate),
     Lint(lint::Lint),
+    Verify(verify::Verify),
 }
 
 /// What a command has to say.
@@ -75,6 +78,9 @@ pub enum CommandError {
     /// A package cannot be rerun.
     #[error(transparent)]
     Replicate(#[from] ReplicateError),
+    /// Nothing can be verified.
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
     /// The arguments do not fit together.
     #[error("{0}")]
     Arguments(String),
@@ -102,6 +108,7 @@ impl Program {
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Replicate(replicate) => replicate.run(),
             Command::Lint(lint) => lint.run(),
+            Command::Verify(verify) => verify.run(),
         }
     }
 }

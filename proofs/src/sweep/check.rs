@@ -2,19 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use selfneg_core::{Case, Options};
+use selfneg_core::Options;
 
 use super::counts::smaller;
 use super::domain::Domain;
 use super::grain::{Detail, Grain};
 use super::pair::Pair;
 use super::{Class, Progress, SweepError, Tally, sweep};
+use crate::property::Judgement;
 
 /// A property of a case under a variant. [`Grain`] says on what it may depend to be
 /// checked on one pair of each class.
 #[derive(Clone, Copy, Debug)]
 pub struct Check<P> {
-    /// Whether it holds of a case.
+    /// What a class says of it.
     pub property: P,
     /// The variant.
     pub options: Options,
@@ -25,6 +26,8 @@ pub struct Check<P> {
 pub struct Checked {
     /// The pairs covered: all of the domain.
     pub pairs: u128,
+    /// How many of them meet the property's premise.
+    pub nonvacuous: u128,
     /// How many of them violate the property.
     pub failing: u128,
     /// A smallest pair that violates it.
@@ -48,7 +51,7 @@ pub fn check<P>(
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Vec<Checked>, SweepError>
 where
-    P: Fn(&Case<'_>, &Options) -> bool + Sync,
+    P: Fn(&Class<'_>, &Options) -> Judgement + Sync,
 {
     let mut by_grain: BTreeMap<Grain, Vec<(usize, &Check<P>)>> = BTreeMap::new();
     for (place, check) in checks.iter().enumerate() {
@@ -56,47 +59,55 @@ where
     }
     let mut verdicts = BTreeMap::new();
     for (grain, checks) in &by_grain {
-        let new = || Checking { checks, failures: vec![Failures::default(); checks.len()] };
+        let new = || Checking { checks, findings: vec![Findings::default(); checks.len()] };
         let swept = sweep(domain, grain, new, progress)?;
-        for ((place, _), Failures { failing, counterexample }) in checks.iter().zip(swept.tally.failures) {
+        for ((place, _), Findings { nonvacuous, failing, counterexample }) in
+            checks.iter().zip(swept.tally.findings)
+        {
             let (pairs, classes) = (swept.pairs, swept.classes);
-            verdicts.insert(*place, Checked { pairs, failing, counterexample, classes });
+            verdicts.insert(*place, Checked { pairs, nonvacuous, failing, counterexample, classes });
         }
     }
     Ok(verdicts.into_values().collect())
 }
 
 #[derive(Clone, Default)]
-struct Failures {
+struct Findings {
+    nonvacuous: u128,
     failing: u128,
     counterexample: Option<Pair>,
 }
 
 struct Checking<'a, P> {
     checks: &'a [(usize, &'a Check<P>)],
-    failures: Vec<Failures>,
+    findings: Vec<Findings>,
 }
 
 impl<P> Tally for Checking<'_, P>
 where
-    P: Fn(&Case<'_>, &Options) -> bool + Sync,
+    P: Fn(&Class<'_>, &Options) -> Judgement + Sync,
 {
     fn take(&mut self, class: &Class<'_>) {
-        for ((_, check), failures) in self.checks.iter().zip(&mut self.failures) {
-            if !(check.property)(&class.case, &check.options) {
-                failures.failing += class.multiplicity;
-                if failures.counterexample.as_ref().is_none_or(|smallest| class.pair < smallest) {
-                    failures.counterexample = Some(class.pair.clone());
+        for ((_, check), findings) in self.checks.iter().zip(&mut self.findings) {
+            let judgement = (check.property)(class, &check.options);
+            if judgement != Judgement::Vacuous {
+                findings.nonvacuous += class.multiplicity;
+            }
+            if judgement == Judgement::Fails {
+                findings.failing += class.multiplicity;
+                if findings.counterexample.as_ref().is_none_or(|smallest| class.pair < smallest) {
+                    findings.counterexample = Some(class.pair.clone());
                 }
             }
         }
     }
 
     fn merge(self, other: Self) -> Self {
-        let failures = self.failures.into_iter().zip(other.failures).map(|(a, b)| Failures {
+        let findings = self.findings.into_iter().zip(other.findings).map(|(a, b)| Findings {
+            nonvacuous: a.nonvacuous + b.nonvacuous,
             failing: a.failing + b.failing,
             counterexample: smaller(a.counterexample, b.counterexample),
         });
-        Self { failures: failures.collect(), ..self }
+        Self { findings: findings.collect(), ..self }
     }
 }

@@ -1,5 +1,6 @@
 //! A finite domain of users, all ordered pairs of which a sweep covers.
 
+use std::fmt;
 use std::ops::RangeInclusive;
 
 use selfneg_core::{Activation, Condition, Disposition, Rank, RulesError};
@@ -171,6 +172,12 @@ impl Domain {
         Activation::new(&self.rows)
     }
 
+    /// The activation's rows, by condition.
+    #[must_use]
+    pub fn rows(&self) -> &[&'static [Disposition]] {
+        &self.rows
+    }
+
     /// Every user, one by one: for domains small enough to enumerate.
     pub fn people(&self) -> impl Iterator<Item = Person> {
         (0..self.users).map(|number| self.person(number))
@@ -192,5 +199,23 @@ impl Domain {
         let mut rank = || Rank(self.lowest.saturating_add(u8::try_from(digit(span)).unwrap_or(u8::MAX)));
         let ranks = std::iter::repeat_with(&mut rank).take(self.dispositions()).collect();
         Person { conditions, ranks }
+    }
+}
+
+/// As reports name it: `6 dispositions, one condition each, ranks 1..=5`.
+impl fmt::Display for Domain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (dispositions, conditions) = (self.dispositions(), self.conditions());
+        if self.conditions.iter().all(|&count| count == 1) {
+            write!(f, "{dispositions} dispositions, one condition each")?;
+        } else {
+            write!(f, "{conditions} conditions on {dispositions} dispositions (")?;
+            for (nth, count) in self.conditions.iter().enumerate() {
+                let comma = if nth == 0 { "" } else { ", " };
+                write!(f, "{comma}{count}")?;
+            }
+            f.write_str(")")?;
+        }
+        write!(f, ", ranks {}..={}", self.lowest, self.highest)
     }
 }

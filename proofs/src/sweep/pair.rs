@@ -7,6 +7,8 @@ use selfneg_core::{
 };
 
 use super::domain::MAX_DISPOSITIONS;
+use crate::case::{OpenCase, OpenUser};
+use crate::counterexample::OwnedUser;
 
 /// Every goal of a domain implies every disposition once.
 static GOAL: [u8; MAX_DISPOSITIONS] = [1; MAX_DISPOSITIONS];
@@ -33,6 +35,24 @@ impl Person {
         ))
     }
 
+    /// The user as a statement takes it.
+    ///
+    /// # Errors
+    /// [`TooManyConditions`], which no person of a domain has.
+    pub fn open(&self) -> Result<OpenUser<'_>, TooManyConditions> {
+        OpenUser::new(&self.ranks, &self.conditions, &GOAL)
+    }
+
+    /// The same person in plain data, with a goal that mentions each of its dispositions.
+    #[must_use]
+    pub fn owned(&self) -> OwnedUser {
+        OwnedUser {
+            ranks: self.ranks.clone(),
+            conditions: self.conditions.clone(),
+            goal: vec![1; self.ranks.len()],
+        }
+    }
+
     fn sum_of_ranks(&self) -> u32 {
         self.ranks.iter().map(|rank| u32::from(rank.0)).sum()
     }
@@ -57,6 +77,14 @@ impl Pair {
     /// [`TooManyConditions`], which no pair of a domain has.
     pub fn case<'a>(&'a self, activation: Activation<'a>) -> Result<Case<'a>, TooManyConditions> {
         Ok(Case { activation, current: self.current.user()?, interrupting: self.interrupting.user()? })
+    }
+
+    /// The pair as a statement takes it.
+    ///
+    /// # Errors
+    /// [`TooManyConditions`], which no pair of a domain has.
+    pub fn open<'a>(&'a self, activation: Activation<'a>) -> Result<OpenCase<'a>, TooManyConditions> {
+        Ok(OpenCase { activation, current: self.current.open()?, interrupting: self.interrupting.open()? })
     }
 
     fn size(&self) -> (usize, u32) {

@@ -1,7 +1,8 @@
 //! Properties checked by the sweep, and its progress.
 
-use selfneg_core::{Case, Options};
-use selfneg_proofs::sweep::{Check, Counts, Detail, Domain, Pair, Person, Progress, check};
+use selfneg_core::{Case, Options, Outcome};
+use selfneg_proofs::property::Judgement;
+use selfneg_proofs::sweep::{Check, Class, Counts, Detail, Domain, Pair, Person, Progress, check};
 
 use crate::seen::size;
 use crate::variants::variants;
@@ -13,22 +14,32 @@ fn checks_count_what_fails_and_find_a_smallest() {
     let domain = Domain::one_to_one(3, 1..=3).unwrap();
     let people: Vec<Person> = domain.people().collect();
     let short = |case: &Case<'_>, options: &Options| case.negotiate(options).rounds <= 5;
+    // Pairs without agreement are outside the premise.
+    let judge = |class: &Class<'_>, options: &Options| match class.case.negotiate(options).outcome {
+        Outcome::NoAgreement => Judgement::Vacuous,
+        Outcome::Agreement(_) => Judgement::from_bool(short(&class.case, options)),
+    };
     let checks: Vec<Check<_>> =
-        variants(&[0, 2]).into_iter().map(|options| Check { property: short, options }).collect();
+        variants(&[0, 2]).into_iter().map(|options| Check { property: judge, options }).collect();
     let checked = check(&domain, &checks, Detail::Merged, &|_| ()).unwrap();
     assert_eq!(checked.len(), checks.len());
     for (check, checked) in checks.iter().zip(checked) {
-        let (mut failing, mut smallest) = (0, None);
+        let (mut nonvacuous, mut failing, mut smallest) = (0, 0, None);
         for current in &people {
             for interrupting in &people {
                 let pair = Pair { current: current.clone(), interrupting: interrupting.clone() };
-                if !short(&pair.case(domain.activation().unwrap()).unwrap(), &check.options) {
+                let case = pair.case(domain.activation().unwrap()).unwrap();
+                if case.negotiate(&check.options).outcome == Outcome::NoAgreement {
+                    continue;
+                }
+                nonvacuous += 1;
+                if !short(&case, &check.options) {
                     failing += 1;
                     smallest = smallest.into_iter().chain([size(&pair)]).min();
                 }
             }
         }
-        assert_eq!(checked.pairs, domain.pairs());
+        assert_eq!((checked.pairs, checked.nonvacuous), (domain.pairs(), nonvacuous));
         assert_eq!((checked.failing, checked.counterexample.as_ref().map(size)), (failing, smallest));
         if let Some(pair) = checked.counterexample {
             assert!(!short(&pair.case(domain.activation().unwrap()).unwrap(), &check.options));
