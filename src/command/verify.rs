@@ -18,9 +18,9 @@ use crate::verify::{Request, Subject, Verification, VerifyError, verify};
 ///
 /// Three engines run here. The sweep covers all ordered pairs of users of a domain, in classes
 /// that count how many pairs they stand for: of the domain given, and of the published
-/// activation (ten conditions, six dispositions) with ranks 1..=5. Enumeration runs every case
-/// of small domains, also for properties that compare two runs. Random cases are large: up to
-/// 200 conditions a side; they are a sample. Kani is not run here.
+/// activation (ten conditions, six dispositions) with ranks 1..=2, or 1..=5 with --thorough.
+/// Enumeration runs every case of small domains, also for properties that compare two runs.
+/// Random cases are large: up to 200 conditions a side; they are a sample. Kani is not run here.
 #[derive(Debug, Args)]
 pub(super) struct Verify {
     /// Check only these properties, see --list [default: all]
@@ -32,9 +32,13 @@ pub(super) struct Verify {
     /// Ranks of the swept domain
     #[arg(long, value_name = "A..=B", default_value = "1..=5", value_parser = ranks)]
     ranks: RangeInclusive<u8>,
-    /// Random cases for each property and variant
-    #[arg(long, value_name = "N", default_value_t = 20)]
-    random: u32,
+    /// Sweep the published activation with the paper's ranks, and try ten times as many random
+    /// cases: some four times as long
+    #[arg(long)]
+    thorough: bool,
+    /// Random cases for each property and variant [default: 20, or 200 with --thorough]
+    #[arg(long, value_name = "N")]
+    random: Option<u32>,
     /// Where the random cases start
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -76,7 +80,14 @@ impl Verify {
         if subjects.is_empty() {
             subjects.extend(Subject::all());
         }
-        let request = Request { subjects, domain, random_cases: self.random, seed: self.seed };
+        let (shared_ranks, random) = if self.thorough { (1..=5, 200) } else { (1..=2, 20) };
+        let request = Request {
+            subjects,
+            domain,
+            shared_domain: Domain::published(shared_ranks).map_err(VerifyError::from)?,
+            random_cases: self.random.unwrap_or(random),
+            seed: self.seed,
+        };
         let bar = ProgressBar::new(0);
         if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed} {msg}") {
             bar.set_style(style);

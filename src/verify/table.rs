@@ -155,8 +155,9 @@ fn tell_subject(subject: Subject, rows: &[&Row], domains: &mut Domains) -> Strin
     let (holds, fails) = (such(Verdict::Holds), such(Verdict::Fails));
     for (verdict, variants) in [("holds", &holds), ("fails", &fails)] {
         if !variants.is_empty() {
-            let _ =
-                writeln!(text, "  {verdict:<8}{:>2}  {}", variants.len(), cover::describe(variants, &all));
+            let count = variants.len();
+            let noun = if count == 1 { "variant" } else { "variants" };
+            let _ = writeln!(text, "  {verdict} in {count} {noun}: {}", cover::describe(variants, &all));
         }
     }
     for row in rows.iter().filter(|row| !row.is_as_expected()) {
