@@ -8,7 +8,7 @@ use saphyr_parser::{Event, Parser, ScalarStyle, Span};
 use crate::error::YamlError;
 
 /// Deepest nesting that is read.
-pub const MAX_DEPTH: usize = 16;
+pub(crate) const MAX_DEPTH: usize = 16;
 
 /// Largest YAML text that is read, in bytes.
 pub const MAX_BYTES: usize = 1 << 20;
