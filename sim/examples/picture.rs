@@ -10,11 +10,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     world.add_person(Person::standing("Alice", 0, Point::new(11.7, 4.2)))?;
     world.add_person(Person::standing("Bob", 0, Point::new(16.4, 3.2)))?;
     world.add_person(
-        Person::standing("Carol", 0, Point::new(3.2, 6.0))
-            .walking(&[Point::new(10.4, 6.0), Point::new(10.4, 9.6)]),
+        Person::standing("Carol", 0, Point::new(3.2, 6.4))
+            .walking(&[Point::new(6.6, 7.4), Point::new(9.4, 9.6)]),
     )?;
     world.add_person(Person::standing("Dan", 1, Point::new(8.6, 8.4)))?;
-    world.add_person(Person { heading: 2.4, ..Person::standing("Erin", 1, Point::new(18.2, 7.4)) })?;
+    world.add_person(Person { heading: 2.4, ..Person::standing("Erin", 1, Point::new(19.4, 6.6)) })?;
     let mut trails = [Vec::new(), Vec::new()];
     for place in ["bathroom", "pharmacy", "food court", "lounge", "clinic"] {
         world.step(Command::go_to(place));

@@ -353,9 +353,6 @@ pub enum WorldError {
         /// The person.
         name: String,
     },
-    /// The robot is inside an elevator and cannot be moved.
-    #[error("the robot is riding an elevator")]
-    Riding,
 }
 
 /// Why there is no way to a goal.

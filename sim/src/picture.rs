@@ -121,7 +121,7 @@ impl Drawing {
     fn title(&mut self, building: &Building, floor: &Floor) {
         self.line(&format!(
             "<text x=\"18\" y=\"-15\" font-size=\"20\" fill=\"#2b3440\"><tspan font-weight=\"bold\">{}</tspan>\
-             <tspan fill=\"#7b7466\"> · {} floor</tspan></text>",
+             <tspan fill=\"#7b7466\" dx=\"6\">· {} floor</tspan></text>",
             escaped(building.name()),
             escaped(&floor.name)
         ));
@@ -192,6 +192,10 @@ impl Drawing {
 
     fn label(&mut self, map: &OccupancyGrid, at: Point, below: f64, text: &str, color: &str) {
         let (x, y) = pixel(map, at);
+        // No longer than this in any usual typeface; kept on the picture.
+        let half: f64 = 4.0 + text.chars().map(|_| 4.2).sum::<f64>();
+        let width = f64::from(map.width()) * map.resolution() * SCALE;
+        let x = if width > 2.0 * half { x.clamp(half, width - half) } else { x };
         self.line(&format!(
             "<text x=\"{x:.2}\" y=\"{:.2}\" font-size=\"13\" text-anchor=\"middle\" fill=\"{color}\" stroke=\"#fffdf8\" \
              stroke-width=\"3.5\" stroke-linejoin=\"round\" paint-order=\"stroke\">{}</text>",
@@ -202,16 +206,16 @@ impl Drawing {
 
     fn person(&mut self, map: &OccupancyGrid, person: &Person, color: &str) {
         let (x, y) = pixel(map, person.position);
-        let r = person.radius * SCALE;
+        let r = 1.25 * person.radius * SCALE;
         // Shoulders across the heading, a head, and a nose to show the way.
         self.line(&format!(
             "<g transform=\"translate({x:.2} {y:.2}) rotate({:.2})\"><ellipse rx=\"{:.2}\" ry=\"{r:.2}\" fill=\"{color}\" \
-             stroke=\"#fff\" stroke-width=\"1.2\"/><path d=\"M{:.2} -3l5 3l-5 3z\" fill=\"#4a3b31\"/><circle r=\"{:.2}\" \
+             stroke=\"#fff\" stroke-width=\"1.2\"/><path d=\"M{:.2} -2.5l4.5 2.5l-4.5 2.5z\" fill=\"#4a3b31\"/><circle r=\"{:.2}\" \
              fill=\"#4a3b31\"/></g>",
             -person.heading.to_degrees(),
             r * 0.62,
-            r * 0.42,
-            r * 0.5
+            r * 0.34,
+            r * 0.42
         ));
     }
 
@@ -226,13 +230,13 @@ impl Drawing {
         let ((x1, y1), (x2, y2)) = (beam(gaze + 0.35), beam(gaze - 0.35));
         self.line(&format!(
             "<g transform=\"translate({x:.2} {y:.2}) rotate({:.2})\"><path d=\"M0 0L{x1:.2} {y1:.2}L{x2:.2} {y2:.2}z\" \
-             fill=\"#f2b134\" fill-opacity=\"0.45\"/><circle r=\"{r:.2}\" fill=\"#fff\" stroke=\"#24303c\" stroke-width=\"2.2\"/>\
+             fill=\"#f2b134\" fill-opacity=\"0.6\"/><circle r=\"{r:.2}\" fill=\"#fff\" stroke=\"#24303c\" stroke-width=\"2.2\"/>\
              <path d=\"M{:.2} -4l6 4l-6 4z\" fill=\"#24303c\"/><circle r=\"{:.2}\" fill=\"#24303c\"/></g>",
             -robot.pose.heading.to_degrees(),
             r - 7.5,
             r * 0.42
         ));
-        self.label(map, robot.pose.position, -14.0, "TIAGo", "#24303c");
+        self.label(map, robot.pose.position, 24.0, "TIAGo", "#24303c");
     }
 }
 

@@ -26,6 +26,10 @@ const BODY_GAP: f64 = 0.01;
 /// Gap to the robot, braking included, into which no person steps, in metres.
 const STEP_GAP: f64 = 0.02;
 
+/// Ways around people that are tried for one goal. Progress is measured along the present way, so
+/// without this bound people could send the robot to and fro for ever.
+const MAX_REROUTES: u32 = 30;
+
 /// How long a step may take and how the robot deals with people.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -42,11 +46,11 @@ pub struct Settings {
     pub passing_gap: f64,
     /// Seconds that it waits before it looks for a way around somebody, 0 to 600; default 4.
     pub patience: f64,
-    /// Seconds without getting on after which it gives up a goal because of a person, 1 to 3600;
-    /// default 60.
+    /// Seconds without getting on, waits included, after which it gives up a goal, 1 to 3600;
+    /// default 60. A goal is also given up after 30 ways around people.
     pub give_up_after: f64,
-    /// Seconds without getting on after which it gives up a goal if nobody is in the way, 10 to
-    /// 3600; default 15.
+    /// Seconds without getting on and without anybody in the way after which it gives up a goal,
+    /// 10 to 3600; default 15.
     pub stuck_after: f64,
 }
 
@@ -274,14 +278,19 @@ struct Mission {
     follower: Option<Follower>,
     paused: bool,
     travelled: f64,
-    /// Least distance that was ever left, and when it last shrank.
+    /// Least distance that was left on the present way, and when it last shrank.
     least_left: f64,
     progress_tick: u64,
+    /// When it last shrank or the robot last had a reason to stand.
+    free_tick: u64,
     /// Who is waited for, and when to look for a way around.
     waiting: Option<(usize, u64)>,
     /// Whether the robot passes people at the smaller gap.
     passing: bool,
+    reroutes: u32,
     rerouted_when_stuck: bool,
+    /// Who was waited for since the last progress.
+    hindered_by: Option<String>,
 }
 
 /// A person near the robot.
@@ -579,9 +588,12 @@ impl World {
             travelled: 0.0,
             least_left: f64::INFINITY,
             progress_tick: self.tick,
+            free_tick: self.tick,
             waiting: None,
             passing: false,
+            reroutes: 0,
             rerouted_when_stuck: false,
+            hindered_by: None,
         });
     }
 
@@ -645,7 +657,7 @@ impl World {
         let now = self.robot.twist;
         let brake = braked(&model, now, self.step);
         if mission.paused {
-            mission.progress_tick = self.tick;
+            (mission.progress_tick, mission.free_tick) = (self.tick, self.tick);
             return (brake, false);
         }
         let follower = match (&mut mission.follower, mission.legs.last()) {
@@ -654,7 +666,7 @@ impl World {
             (None, Some(&Leg::Ride { elevator, from, to })) => {
                 self.begin_ride(elevator, from, to, events);
                 mission.legs.pop();
-                mission.progress_tick = self.tick;
+                (mission.progress_tick, mission.free_tick) = (self.tick, self.tick);
                 mission.least_left = f64::INFINITY;
                 return (Twist::ZERO, false);
             }
@@ -867,6 +879,9 @@ impl World {
         let found = way.is_some();
         if let Some(way) = way {
             mission.follower = Some(Follower::new(way));
+            // The new way may be longer; progress is measured along it.
+            mission.least_left = self.remaining(mission).distance;
+            mission.reroutes += 1;
         }
         found
     }
@@ -876,19 +891,25 @@ impl World {
         let left = self.remaining(mission).distance;
         if left < mission.least_left - 0.1 {
             mission.least_left = left;
-            mission.progress_tick = self.tick;
+            (mission.progress_tick, mission.free_tick) = (self.tick, self.tick);
             mission.rerouted_when_stuck = false;
+            mission.hindered_by = None;
+        }
+        if let Some((index, _)) = mission.waiting {
+            mission.free_tick = self.tick;
+            mission.hindered_by = self.people.get(index).map(|w| w.person.name.clone());
         }
         let idle = self.seconds(self.tick - mission.progress_tick);
-        let person = mission.waiting.and_then(|(i, _)| self.people.get(i)).map(|w| w.person.name.clone());
-        let limit = if person.is_some() { self.settings.give_up_after } else { self.settings.stuck_after };
-        if idle >= limit {
+        let stuck = self.seconds(self.tick - mission.free_tick);
+        let worn_out = mission.reroutes >= MAX_REROUTES && mission.waiting.is_some();
+        if idle >= self.settings.give_up_after || stuck >= self.settings.stuck_after || worn_out {
+            let person = mission.hindered_by.take();
             events.push(Event::Blocked { place: mission.place.clone(), person });
             return true;
         }
-        if person.is_none() && idle >= limit / 2.0 && !mission.rerouted_when_stuck {
+        if stuck >= self.settings.stuck_after / 2.0 && !mission.rerouted_when_stuck {
             mission.rerouted_when_stuck = true;
-            if self.reroute(mission, false) {
+            if self.reroute(mission, true) || self.reroute(mission, false) {
                 events.push(Event::Rerouted);
             }
         }
