@@ -15,7 +15,7 @@ pub(crate) const TOLERANCE: f64 = 0.08;
 
 /// Off by more than this the robot stops and turns on the spot, until it is off by less than
 /// [`AIMED`], in radians.
-const TOO_FAR_ASIDE: f64 = 0.8;
+pub(crate) const TOO_FAR_ASIDE: f64 = 0.8;
 const AIMED: f64 = 0.1;
 
 #[derive(Clone, Debug)]
@@ -71,6 +71,17 @@ impl Follower {
     pub(crate) fn rest(&self, here: Point) -> Vec<Point> {
         let ahead = self.way.iter().zip(&self.along).filter(|(_, s)| **s > self.at).map(|(p, _)| *p);
         core::iter::once(here).chain(ahead).collect()
+    }
+
+    /// Length of what is left of the way from `here`.
+    pub(crate) fn left(&self, here: Point) -> f64 {
+        let mut left = 0.0;
+        let mut last = here;
+        for (&p, _) in self.way.iter().zip(&self.along).filter(|(_, s)| **s > self.at) {
+            left += last.distance(p);
+            last = p;
+        }
+        left
     }
 
     fn segments(&self) -> impl Iterator<Item = (Segment, f64, f64)> {

@@ -93,8 +93,8 @@
 //!
 //! **People.** Nobody plans around a moving person. The robot waits at [`Settings::personal_gap`];
 //! after [`Settings::patience`] it looks for a way around whoever stands there, at
-//! [`Settings::passing_gap`]; without getting on for [`Settings::give_up_after`] it gives the goal
-//! up with [`Event::Blocked`]. People do not avoid walls or each other: waypoints that lead
+//! [`Settings::passing_gap`]; without getting on for [`Settings::give_up_after`], or after 30 detours, it
+//! gives the goal up with [`Event::Blocked`]. People do not avoid walls or each other: waypoints that lead
 //! through a wall are an error, and people may overlap people.
 //!
 //! # Determinism
@@ -108,9 +108,11 @@
 //!
 //! # Figures
 //!
-//! Measured on one core of a shared two-core x86-64 machine, in release mode: SPEED_PLACEHOLDER
-//! Over a tour of all 19 places of the mall the time that [`World::estimate`] foretells was
-//! ESTIMATE_PLACEHOLDER
+//! Measured on one core of a shared two-core x86-64 machine, in release mode (example
+//! `speed`): a tour of all places of the mall, 486 s of simulated time in 20 ms steps, took 0.15 s,
+//! that is some 3000 times real time; with 8 people in the way about the same. On that tour, with
+//! nobody in the way, the robot took 0.95 to 1.05 times what [`World::estimate`] foretold (a test
+//! holds it to 0.85 to 1.15).
 //!
 //! # Left out
 //!
@@ -130,6 +132,8 @@ pub mod pgm;
 mod picture;
 mod reach;
 mod route;
+mod settings;
+mod story;
 pub mod tiago;
 mod world;
 mod yaml;
@@ -143,6 +147,8 @@ pub use map::{Cell, MAX_RESOLUTION, MIN_RESOLUTION, OccupancyGrid};
 pub use person::{Person, Waypoint};
 pub use picture::{Picture, svg};
 pub use route::{Estimate, Leg};
+pub use settings::Settings;
+pub use story::{Activity, Command, Event, Progress, Robot};
 pub use tiago::{JointLimits, RobotModel};
-pub use world::{Activity, Command, Event, Progress, Robot, Settings, World};
+pub use world::World;
 pub use yaml::MAX_BYTES as MAX_YAML_BYTES;

@@ -6,8 +6,9 @@ use crate::building::{Building, Floor};
 use crate::geometry::{Point, sin_cos};
 use crate::map::{Cell, OccupancyGrid};
 use crate::person::Person;
+use crate::story::Robot;
 use crate::tiago::RobotModel;
-use crate::world::{Robot, World};
+use crate::world::World;
 
 /// Pixels a metre.
 const SCALE: f64 = 32.0;

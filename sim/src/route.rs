@@ -148,3 +148,9 @@ pub(crate) fn drive_estimate(model: &RobotModel, way: &[Point]) -> Estimate {
     let seconds = if distance > 0.0 { cruise + start_and_stop + turning / model.max_turn / 2.0 } else { 0.0 };
     Estimate { distance, seconds }
 }
+
+/// How long it takes to turn on the spot, from standing to standing.
+pub(crate) fn turn_seconds(model: &RobotModel, turn: f64) -> f64 {
+    let (speed, rate) = (model.max_turn, model.turn_acceleration);
+    if turn < speed * speed / rate { 2.0 * (turn / rate).sqrt() } else { turn / speed + speed / rate }
+}

@@ -5,14 +5,15 @@ use core::time::Duration;
 use crate::building::Building;
 use crate::drive::{Twist, braked, chords, limited, reach_seconds, stopping_speed};
 use crate::error::{RouteError, WorldError};
-use crate::follow::{Follower, Wish};
+use crate::follow::{Follower, TOO_FAR_ASIDE, Wish};
 use crate::geometry::{Point, Pose, Segment, normalize_angle};
 use crate::joints::{JointTargets, Joints};
 use crate::map::OccupancyGrid;
 use crate::person::{Guard, Person, Walker, Waypoint};
 use crate::reach::{Disc, Reach};
-use crate::route::{Estimate, Leg, drive_estimate, route};
-use crate::tiago::RobotModel;
+use crate::route::{Estimate, Leg, drive_estimate, route, turn_seconds};
+use crate::settings::Settings;
+use crate::story::{Activity, Command, Event, Progress, Robot};
 
 /// Clearance beyond its radius that the robot keeps from walls where it can, in metres.
 const WALL_CLEARANCE: f64 = 0.01;
@@ -29,245 +30,6 @@ const STEP_GAP: f64 = 0.02;
 /// Ways around people that are tried for one goal. Progress is measured along the present way, so
 /// without this bound people could send the robot to and fro for ever.
 const MAX_REROUTES: u32 = 30;
-
-/// How long a step may take and how the robot deals with people.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(default))]
-pub struct Settings {
-    /// The robot.
-    pub model: RobotModel,
-    /// Length of a step, 1 to 50 ms; default 20 ms.
-    pub step: Duration,
-    /// Gap to people at which the robot waits for them to pass, in metres, 0.05 to 2; default 0.4.
-    pub personal_gap: f64,
-    /// Gap at which it passes someone who does not move on, in metres, 0.02 to `personal_gap`;
-    /// default 0.1.
-    pub passing_gap: f64,
-    /// Seconds that it waits before it looks for a way around somebody, 0 to 600; default 4.
-    pub patience: f64,
-    /// Seconds without getting on, waits included, after which it gives up a goal, 1 to 3600;
-    /// default 60. A goal is also given up after 30 ways around people.
-    pub give_up_after: f64,
-    /// Seconds without getting on and without anybody in the way after which it gives up a goal,
-    /// 10 to 3600; default 15.
-    pub stuck_after: f64,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            model: RobotModel::TIAGO,
-            step: Duration::from_millis(20),
-            personal_gap: 0.4,
-            passing_gap: 0.1,
-            patience: 4.0,
-            give_up_after: 60.0,
-            stuck_after: 15.0,
-        }
-    }
-}
-
-impl Settings {
-    fn check(&self) -> Result<(), WorldError> {
-        let m = &self.model;
-        let checks = [
-            ("step", self.step.as_secs_f64(), 0.001..=0.05, "0.001 to 0.05 s"),
-            ("personal_gap", self.personal_gap, 0.05..=2.0, "0.05 to 2 m"),
-            ("passing_gap", self.passing_gap, 0.02..=self.personal_gap, "0.02 m to personal_gap"),
-            ("patience", self.patience, 0.0..=600.0, "0 to 600 s"),
-            ("give_up_after", self.give_up_after, 1.0..=3600.0, "1 to 3600 s"),
-            ("stuck_after", self.stuck_after, 10.0..=3600.0, "10 to 3600 s"),
-            ("radius", m.radius, 0.05..=2.0, "0.05 to 2 m"),
-            ("wheel_radius", m.wheel_radius, 0.01..=1.0, "0.01 to 1 m"),
-            ("wheel_separation", m.wheel_separation, 0.05..=4.0, "0.05 to 4 m"),
-            ("max_speed", m.max_speed, 0.05..=3.0, "0.05 to 3 m/s"),
-            ("cruise_speed", m.cruise_speed, 0.05..=m.max_speed, "0.05 m/s to max_speed"),
-            ("wheel_speed", m.wheel_speed, m.max_speed..=10.0, "max_speed to 10 m/s"),
-            ("max_turn", m.max_turn, 0.1..=6.0, "0.1 to 6 rad/s"),
-            ("acceleration", m.acceleration, 0.05..=10.0, "0.05 to 10 m/s2"),
-            ("turn_acceleration", m.turn_acceleration, 0.1..=20.0, "0.1 to 20 rad/s2"),
-        ];
-        for (name, value, range, expected) in checks {
-            if !range.contains(&value) {
-                return Err(WorldError::Setting { name, value, expected });
-            }
-        }
-        for (name, joint) in [("torso", m.torso), ("head_pan", m.head_pan), ("head_tilt", m.head_tilt)] {
-            let fine = joint.min <= 0.0 && joint.max >= 0.0 && joint.speed > 0.0;
-            if !fine || !joint.min.is_finite() || !joint.max.is_finite() || !joint.speed.is_finite() {
-                let expected = "finite, min <= 0 <= max, speed over 0";
-                return Err(WorldError::Setting { name, value: joint.speed, expected });
-            }
-        }
-        Ok(())
-    }
-}
-
-/// What the robot is told, at most one thing a step.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "kebab-case"))]
-pub enum Command {
-    /// Nothing new.
-    #[default]
-    Continue,
-    /// Go to a place, instead of anywhere else.
-    GoTo {
-        /// The place's name.
-        place: String,
-    },
-    /// Stop, but keep the goal. A ride in an elevator ends first.
-    Stop,
-    /// Go on after [`Command::Stop`]; without a goal that was stopped, nothing.
-    Resume,
-    /// Stop and forget the goal.
-    Cancel,
-    /// Hold torso and head; `targets: None` lets them show by themselves what the robot is about.
-    Hold {
-        /// Where to.
-        targets: Option<JointTargets>,
-    },
-}
-
-impl Command {
-    /// [`Command::GoTo`] a place.
-    #[must_use]
-    pub fn go_to(place: &str) -> Self {
-        Self::GoTo { place: place.to_owned() }
-    }
-}
-
-/// What has happened in a step.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "kebab-case"))]
-pub enum Event {
-    /// The robot sets out.
-    SetOut {
-        /// For this place.
-        place: String,
-        /// What it will take if nobody is in the way.
-        estimate: Estimate,
-    },
-    /// There is no way; the robot has no goal now.
-    Unreachable {
-        /// The place asked for.
-        place: String,
-        /// Why.
-        reason: RouteError,
-    },
-    /// An earlier goal is given up, by [`Command::GoTo`] or [`Command::Cancel`].
-    Dropped {
-        /// The earlier goal.
-        place: String,
-    },
-    /// The robot is there, turned as the place wants, and stands.
-    Arrived {
-        /// Where.
-        place: String,
-    },
-    /// [`Command::Stop`] is obeyed.
-    Paused {
-        /// The goal kept.
-        place: String,
-    },
-    /// [`Command::Resume`] is obeyed.
-    Resumed {
-        /// The goal.
-        place: String,
-    },
-    /// The robot stands and waits for someone in its way.
-    Waiting {
-        /// Who.
-        person: String,
-    },
-    /// It moves again.
-    MovingOn,
-    /// It has found another way, around someone or from where it is.
-    Rerouted,
-    /// It has got no further for too long and has no goal now.
-    Blocked {
-        /// The goal given up.
-        place: String,
-        /// Who was in the way, if anybody.
-        person: Option<String>,
-    },
-    /// The robot is in an elevator and its doors close.
-    RideBegun {
-        /// The elevator.
-        elevator: String,
-        /// Index of the floor it leaves.
-        from: usize,
-        /// Index of the floor it rides to.
-        to: usize,
-    },
-    /// The doors open on another floor.
-    FloorChanged {
-        /// Index of the floor.
-        floor: usize,
-    },
-    /// A person has been at the last waypoint as long as wanted.
-    PersonDone {
-        /// Who.
-        person: String,
-    },
-}
-
-/// What the robot is doing.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(tag = "kind", rename_all = "kebab-case"))]
-pub enum Activity {
-    /// It has no goal.
-    Idle,
-    /// It is on its way.
-    Driving,
-    /// It waits for somebody in its way.
-    Waiting {
-        /// Who.
-        person: String,
-    },
-    /// It was told to stop.
-    Paused,
-    /// It is inside an elevator.
-    Riding {
-        /// The elevator.
-        elevator: String,
-        /// Index of the floor it rides to.
-        to: usize,
-        /// Seconds to go.
-        seconds: f64,
-    },
-}
-
-/// Where the robot is and how it moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Robot {
-    /// Index of the floor.
-    pub floor: usize,
-    /// Where and which way.
-    pub pose: Pose,
-    /// How fast.
-    pub twist: Twist,
-    /// Torso, head, wheels.
-    pub joints: Joints,
-}
-
-/// How far the robot is with its goal.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Progress {
-    /// The goal.
-    pub place: String,
-    /// Metres driven since it set out.
-    pub travelled: f64,
-    /// Still to go, if nobody is in the way.
-    pub remaining: Estimate,
-    /// Share of the distance that is done, 0 to 1.
-    pub fraction: f64,
-}
 
 #[derive(Clone, Debug)]
 struct Mission {
@@ -512,7 +274,8 @@ impl World {
     ///
     /// A [`RouteError`] if there is no such place, or no way to it.
     pub fn estimate(&self, place: &str) -> Result<Estimate, RouteError> {
-        Ok(self.legs_estimate(&self.route(place)?))
+        let heading = self.building.place(place).and_then(|(_, p)| p.heading);
+        Ok(self.legs_estimate(&self.route(place)?, heading))
     }
 
     /// The legs of the quickest route to a place from here, people left out of account.
@@ -576,11 +339,12 @@ impl World {
     }
 
     fn set_out(&mut self, place: String, mut legs: Vec<Leg>, events: &mut Vec<Event>) {
-        let estimate = self.legs_estimate(&legs);
+        let heading = self.building.place(&place).and_then(|(_, p)| p.heading);
+        let estimate = self.legs_estimate(&legs, heading);
         events.push(Event::SetOut { place: place.clone(), estimate });
         legs.reverse();
         self.mission = Some(Mission {
-            heading: self.building.place(&place).and_then(|(_, p)| p.heading),
+            heading,
             place,
             legs,
             follower: None,
@@ -692,7 +456,7 @@ impl World {
         let (twist, in_the_way) = match wish {
             Wish::Go { twist, aside } => {
                 self.gaze = aside;
-                self.permitted(twist, clearance, &discs, &people)
+                self.permitted((twist, aside), clearance, &discs, &people)
             }
             Wish::Brake { aside } => {
                 self.gaze = aside;
@@ -783,11 +547,11 @@ impl World {
     }
 
     /// Of the wish and slower versions of it the first after which the robot can still stop
-    /// without touching anything. That holds for braking, because it held a step ago. Also tells
-    /// the person who stood against the wish.
+    /// without touching anything. That holds for braking, because it held a step ago, and for
+    /// turning on the spot. Also tells the person who stood against the wish.
     fn permitted(
         &self,
-        wish: Twist,
+        (wish, aside): (Twist, f64),
         clearance: f64,
         discs: &[Disc],
         people: &[Near],
@@ -798,11 +562,19 @@ impl World {
             let slower = Twist { linear: wish.linear * share, angular: wish.angular * share };
             let twist = limited(model, now, slower, self.step);
             match self.obstacle(twist, clearance, discs, people) {
+                // Standing is always free, but gets nobody anywhere.
+                Ok(()) if twist.linear <= 0.0 && wish.linear > 0.0 => {}
                 Ok(()) => return (twist, in_the_way),
                 Err(disc) => in_the_way = in_the_way.or(disc.and_then(|d| people.get(d).map(|n| n.person))),
             }
         }
-        (braked(model, now, self.step), in_the_way)
+        if now.linear > 0.0 {
+            return (braked(model, now, self.step), in_the_way);
+        }
+        // The line ahead is free, only the arc towards it is not: turn until it needs no arc.
+        let speed = stopping_speed(aside.abs(), model.turn_acceleration, self.step).min(model.max_turn);
+        let turn = Twist { linear: 0.0, angular: speed.copysign(aside) };
+        (limited(model, now, turn, self.step), in_the_way)
     }
 
     /// Whether a step with this twist, and braking after it, is free; if not, the disc in the
@@ -880,7 +652,7 @@ impl World {
         if let Some(way) = way {
             mission.follower = Some(Follower::new(way));
             // The new way may be longer; progress is measured along it.
-            mission.least_left = self.remaining(mission).distance;
+            mission.least_left = self.distance_left(mission);
             mission.reroutes += 1;
         }
         found
@@ -888,7 +660,7 @@ impl World {
 
     /// Watches that the robot gets on; gives true if the goal is given up.
     fn gives_up(&self, mission: &mut Mission, events: &mut Vec<Event>) -> bool {
-        let left = self.remaining(mission).distance;
+        let left = self.distance_left(mission);
         if left < mission.least_left - 0.1 {
             mission.least_left = left;
             (mission.progress_tick, mission.free_tick) = (self.tick, self.tick);
@@ -916,38 +688,65 @@ impl World {
         false
     }
 
+    fn distance_left(&self, mission: &Mission) -> f64 {
+        let (now, later) = match &mission.follower {
+            Some(f) => (f.left(self.robot.pose.position), mission.legs.len().saturating_sub(1)),
+            None => (0.0, mission.legs.len()),
+        };
+        let later = mission.legs.iter().take(later).map(|leg| match leg {
+            Leg::Drive { way, .. } => drive_estimate(&self.settings.model, way).distance,
+            Leg::Ride { .. } => 0.0,
+        });
+        now + later.sum::<f64>()
+    }
+
     fn remaining(&self, mission: &Mission) -> Estimate {
         // Of the present leg what is left of it, of the others all.
-        let legs = mission
-            .legs
-            .iter()
-            .take(mission.legs.len().saturating_sub(usize::from(mission.follower.is_some())));
-        let mut all = self.legs_estimate(legs);
+        let mut legs: Vec<Leg> = Vec::with_capacity(mission.legs.len());
+        let mut ahead = mission.legs.iter().rev();
         if let Some(follower) = &mission.follower {
-            let rest = drive_estimate(&self.settings.model, &follower.rest(self.robot.pose.position));
-            all.distance += rest.distance;
-            all.seconds += rest.seconds;
+            ahead.next();
+            let way = follower.rest(self.robot.pose.position);
+            legs.push(Leg::Drive { floor: self.robot.floor, way });
         }
+        legs.extend(ahead.cloned());
+        let mut all = self.legs_estimate(&legs, mission.heading);
         if let Some(ride) = &self.ride {
             all.seconds += self.seconds(ride.ends.saturating_sub(self.tick));
         }
         all
     }
 
-    fn legs_estimate<'a>(&self, legs: impl IntoIterator<Item = &'a Leg>) -> Estimate {
+    /// What legs take from where the robot stands, with the turns on the spot at the beginning of
+    /// each and, if a heading is wanted, at the end.
+    fn legs_estimate(&self, legs: &[Leg], heading: Option<f64>) -> Estimate {
+        let model = &self.settings.model;
         let mut all = Estimate::default();
+        let mut faces = self.robot.pose.heading;
+        let mut turn_to = |direction: f64, least: f64| {
+            let turn = normalize_angle(direction - faces).abs();
+            faces = direction;
+            if turn > least { turn_seconds(model, turn) } else { 0.0 }
+        };
         for leg in legs {
             match leg {
                 Leg::Drive { way, .. } => {
-                    let part = drive_estimate(&self.settings.model, way);
+                    let part = drive_estimate(model, way);
                     all.distance += part.distance;
                     all.seconds += part.seconds;
+                    if let [first, second, ..] = way[..] {
+                        all.seconds += turn_to(first.direction_to(second), TOO_FAR_ASIDE);
+                    }
+                    if let [.., last_but_one, last] = way[..] {
+                        turn_to(last_but_one.direction_to(last), 0.0);
+                    }
                 }
                 Leg::Ride { elevator, .. } => {
                     all.seconds += self.building.elevators().get(*elevator).map_or(0.0, |e| e.ride_seconds);
                 }
             }
         }
+        all.seconds += heading.map_or(0.0, |h| turn_to(h, 0.0));
         all
     }
 

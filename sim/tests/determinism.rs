@@ -1,5 +1,7 @@
 //! The same world and the same commands give the same bits.
 
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "also in what tests call")]
+
 use selfneg_sim::{Building, Command, Event, Person, Picture, Point, Settings, World};
 
 /// Runs an eventful morning; gives a digest of every bit of every state, and the events.

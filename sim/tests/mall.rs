@@ -1,5 +1,7 @@
 //! The mall: every place can be reached from every other, within the limits, touching nothing.
 
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "also in what tests call")]
+
 use std::time::Duration;
 
 use selfneg_sim::{Activity, Building, Command, Event, Leg, Person, Point, Settings, World, normalize_angle};
@@ -69,7 +71,7 @@ fn a_tour_of_all_places_arrives_everywhere_about_when_foretold() {
             place.name, foretold.distance, foretold.seconds, took
         );
     }
-    assert!(ratios.iter().all(|r| (0.75..1.6).contains(r)), "{ratios:?}");
+    assert!(ratios.iter().all(|r| (0.85..1.15).contains(r)), "{ratios:?}");
 }
 
 #[test]

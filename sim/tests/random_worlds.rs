@@ -1,6 +1,8 @@
 //! Random rooms, people and commands: what must hold after every step, always holds; what can be
 //! reached is reached; nothing goes on for ever.
 
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "also in what tests call")]
+
 use proptest::prelude::*;
 use selfneg_sim::{
     Activity, Building, Cell, Command, Event, Floor, OccupancyGrid, Person, Place, Point, Settings, World,
@@ -55,8 +57,13 @@ fn command() -> impl Strategy<Value = (Command, u32)> {
     (command, 1..400u32)
 }
 
+fn cases() -> u32 {
+    std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(60)
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+    // More with PROPTEST_CASES, in release mode.
+    #![proptest_config(ProptestConfig::with_cases(cases()))]
 
     #[test]
     fn what_can_be_reached_is_reached_without_a_touch(
