@@ -178,3 +178,22 @@ fn the_unknown_is_an_event() {
     assert!(matches!(&events[..], [Event::Unreachable { place, .. }] if place == "Mars"), "{events:?}");
     assert_eq!(world.activity(), Activity::Idle);
 }
+
+/// Among them the bakery, where the robot once came to stand so near to a door jamb that every
+/// arc was refused.
+#[test]
+fn shops_are_reached_through_people_who_walk_to_and_fro() {
+    let mut world = world("entrance");
+    for i in 0..20_u32 {
+        let x = 1.0 + 1.2 * f64::from(i);
+        let walk = [Point::new(x, 11.2), Point::new(x, 5.8)];
+        let person = Person::standing(&format!("p{i}"), 0, walk[1]).walking(&walk);
+        // Those whose walk would lead through a planter stay at home.
+        let _ = world.add_person(Person { repeat: true, ..person });
+    }
+    assert!(world.people().count() >= 5);
+    for place in ["entrance", "information", "bakery", "grocery"] {
+        let events = go(&mut world, place, 180);
+        assert!(arrived(&events, place), "{events:?}");
+    }
+}
