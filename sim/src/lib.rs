@@ -108,11 +108,11 @@
 //!
 //! # Figures
 //!
-//! Measured on one core of a shared two-core x86-64 machine, in release mode (example
-//! `speed`): a tour of all places of the mall, 486 s of simulated time in 20 ms steps, took 0.15 s,
-//! that is some 3000 times real time; with 8 people in the way about the same. On that tour, with
-//! nobody in the way, the robot took 0.95 to 1.05 times what [`World::estimate`] foretold (a test
-//! holds it to 0.85 to 1.15).
+//! Measured on one core of a shared two-core x86-64 machine, in release mode (example `speed`): a
+//! tour of all places of the mall, 486 s of simulated time in 20 ms steps, took 0.14 to 0.2 s, that
+//! is 2400 to 3400 times real time depending on what else the machine did; with 8 people in the
+//! way about the same. On that tour, with nobody in the way, the robot took 0.95 to 1.05 times what
+//! [`World::estimate`] foretold (a test holds it to 0.85 to 1.15).
 //!
 //! # Left out
 //!
