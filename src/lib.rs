@@ -37,6 +37,7 @@
 //! | [`lint`] | what is legal but surely not meant |
 //! | [`mod@replicate`] | rerun the published package against its own logs |
 //! | [`demo`] | the paper's mall |
+//! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
 #![forbid(unsafe_code)]
 
@@ -45,6 +46,7 @@ pub mod command;
 pub mod demo;
 pub mod input;
 pub mod lint;
+pub mod mission;
 pub mod precedence;
 pub mod record;
 pub mod replicate;
