@@ -17,6 +17,10 @@ pub(super) enum Fault {
     HangWithoutConditions,
     /// Data are taken whenever they arrive, as in the published system.
     TakeLateData,
+    /// Components are given back without having been cleaned up.
+    SkipCleanup,
+    /// A claimed emergency is believed.
+    BelieveClaims,
 }
 
 /// The faults of one mission: at most one.

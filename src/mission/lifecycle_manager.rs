@@ -125,7 +125,9 @@ impl LifecycleManager {
             if *lifecycle == Lifecycle::Active {
                 transit(lifecycle, Transition::Deactivate, component, Some(user), out);
             }
-            transit(lifecycle, Transition::Cleanup, component, Some(user), out);
+            if !faults.has(Fault::SkipCleanup) {
+                transit(lifecycle, Transition::Cleanup, component, Some(user), out);
+            }
         }
         managers.user = None;
     }

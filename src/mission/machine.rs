@@ -262,7 +262,8 @@ impl State {
         let Some((_, goal)) = rules.category_of(category) else {
             return out.push(Output::Record(Record::Ignored { what: "emergency", user: None }));
         };
-        if !hard_ethics::is_certain(category, evidence, rules) {
+        let certain = hard_ethics::is_certain(category, evidence, rules);
+        if !certain && !self.faults.has(Fault::BelieveClaims) {
             return out.push(Output::Record(Record::EmergencyUnverified { category, place, evidence }));
         }
         out.push(Output::Record(Record::EmergencyDecided { category, place, evidence }));

@@ -83,6 +83,8 @@
 //!   are the environment's. Lists of pseudonyms that a decision needs are freed unwiped;
 //! - what the operating system does: swap, hibernation, core dumps.
 
+#[cfg(test)]
+mod check;
 mod command;
 mod context_ethics;
 mod event;
