@@ -103,6 +103,8 @@ mod settling;
 mod specification;
 mod user_data;
 mod user_managers;
+#[cfg(test)]
+mod wiping;
 
 pub use command::{Closing, Command, Output, Refusal, Staff, Waiting};
 pub use event::{AskId, CategoryId, Event, Evidence, ExecutionId, GoalId, Place, UserId};
