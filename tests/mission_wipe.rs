@@ -5,6 +5,7 @@
 //! *are* found while the user is served is what makes the later absence mean something.
 
 #![cfg(target_os = "linux")]
+#![expect(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may stop")]
 
 mod mission_environment;
 
@@ -66,7 +67,9 @@ impl Words {
             let end = u64::from_str_radix(to, 16).unwrap();
             while at < end {
                 // Reading the buffer into itself would find everything many times.
-                let own = buffer.as_ptr().addr() as u64..(buffer.as_ptr().addr() + buffer.len()) as u64;
+                let address = |at: usize| u64::try_from(at).unwrap();
+                let own = buffer.as_ptr_range();
+                let own = address(own.start.addr())..address(own.end.addr());
                 if own.contains(&at) {
                     at = own.end;
                     continue;
@@ -80,11 +83,8 @@ impl Words {
                     *found += buffer[..read].windows(word.len()).filter(|window| same(window)).count();
                 }
                 // Words may lie across two pieces.
-                at += if read == length && at + read as u64 != before_own {
-                    read as u64 - 24
-                } else {
-                    length as u64
-                };
+                let whole_words = read == length && at + address(read) != before_own;
+                at += address(if whole_words { read - 24 } else { length });
             }
         }
         buffer.fill(0);

@@ -1,6 +1,7 @@
 //! A scripted environment: it keeps what the mission asks for, and answers when told to.
 
 #![allow(dead_code, unreachable_pub, reason = "each test file uses its own part")]
+#![expect(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "it is used in tests alone")]
 
 use selfneg::input::{Rules, Truth};
 use selfneg::mission::{

@@ -62,7 +62,7 @@ fn explore(name: &str, model: MissionModel, extent: Extent) -> Run {
                 violated.push((property.name, format!("{:?}", path.into_actions())));
             }
             (stateright::Expectation::Sometimes, None) if extent == Extent::Everything => {
-                violated.push((property.name, "never".to_owned()))
+                violated.push((property.name, "never".to_owned()));
             }
             _ => {}
         }
