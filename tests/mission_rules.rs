@@ -170,6 +170,7 @@ mod requests {
         robot.request(BOB, "t2").data(BOB, bob_who_defers());
         robot.send(Event::NextRound);
         robot.request(CAROL, "t2");
+        assert!(robot.last_has(|o| matches!(o, Output::Command(Command::AskData { user: CAROL, .. }))));
         robot.negotiate();
         assert!(!robot.has_record(|r| matches!(r, Record::Decided { .. })), "Carol's data are awaited");
         robot.data(CAROL, data([5, 1, 1], &["c"])).negotiate();

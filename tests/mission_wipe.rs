@@ -39,7 +39,7 @@ impl Words {
         Self { place: letters(0), condition: letters(5), ranks }
     }
 
-    fn data(&self) -> UserData {
+    fn data(self) -> UserData {
         let ranks =
             self.ranks.iter().enumerate().map(|(at, rank)| (Text::new(format!("D{at}")), rank ^ MASK));
         UserData {
@@ -50,7 +50,7 @@ impl Words {
     }
 
     /// How often each word stands in memory.
-    fn found(&self) -> [usize; 3] {
+    fn found(self) -> [usize; 3] {
         let words = [self.place, self.condition, self.ranks];
         let maps = fs::read_to_string("/proc/self/maps").unwrap();
         let memory = File::open("/proc/self/mem").unwrap();
@@ -77,10 +77,18 @@ impl Words {
                 let before_own = if at < own.start { own.start.min(end) } else { end };
                 let length = usize::try_from(before_own - at).unwrap().min(buffer.len());
                 let Ok(read) = memory.read_at(&mut buffer[..length], at) else { break };
-                for (word, found) in words.iter().zip(&mut found) {
-                    let same =
-                        |window: &[u8]| window.iter().zip(word).all(|(byte, masked)| byte ^ MASK == *masked);
-                    *found += buffer[..read].windows(word.len()).filter(|window| same(window)).count();
+                for (start, byte) in buffer[..read].iter().enumerate() {
+                    // Most of memory is zero, and no word has a zero.
+                    if *byte == 0 {
+                        continue;
+                    }
+                    for (word, found) in words.iter().zip(&mut found) {
+                        let rest = buffer[start..read].iter();
+                        let same = byte ^ MASK == word[0] && read - start >= word.len();
+                        if same && rest.zip(word).all(|(byte, masked)| byte ^ MASK == *masked) {
+                            *found += 1;
+                        }
+                    }
                 }
                 // Words may lie across two pieces.
                 let whole_words = read == length && at + address(read) != before_own;
