@@ -382,6 +382,9 @@ mod hard_ethics {
         robot.emergency("boarding", Evidence::Verified).emergency("fire", Evidence::Sensed);
         robot.action_done().action_done();
         assert!(serves_emergency(&robot, "fire"));
+        let boarding = robot.mission.rules().category("boarding").unwrap();
+        let starts_boarding = |r: &Record| matches!(r, Record::GoalStarted { served: Served::Emergency(c), .. } if *c == boarding);
+        assert!(!robot.has_record(starts_boarding));
         robot.finish_goal();
         assert!(serves_emergency(&robot, "boarding"));
 
@@ -397,6 +400,19 @@ mod hard_ethics {
         assert!(serves_emergency(&robot, "fall"));
         robot.finish_goal();
         assert!(serves_emergency(&robot, "boarding"));
+    }
+
+    #[test]
+    fn of_two_equally_grave_the_earlier_goes_first() {
+        for [earlier, later] in [["fire", "smoke"], ["smoke", "fire"]] {
+            let mut robot = Environment::serving(alice());
+            robot.action_done();
+            robot.emergency(earlier, Evidence::Sensed).emergency(later, Evidence::Sensed);
+            robot.action_done().action_done();
+            assert!(serves_emergency(&robot, earlier));
+            robot.finish_goal();
+            assert!(serves_emergency(&robot, later));
+        }
     }
 
     #[test]

@@ -52,6 +52,7 @@ pub fn specification() -> Specification {
         goals: vec![goal("t1", &["drive"]), goal("t2", &["drive"]), goal("t3", &[]), goal("fly", &["wings"])],
         emergencies: vec![
             category("fire", 9, Proof::Sensed),
+            category("smoke", 9, Proof::Sensed),
             category("fall", 5, Proof::Sensed),
             category("boarding", 3, Proof::Verified),
         ],

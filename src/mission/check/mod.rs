@@ -20,10 +20,17 @@ mod ways_to_idle;
 
 use std::time::Instant;
 
+use selfneg_core::{Aggregation, Fallback, Options, QuitRule, TieRule};
 use stateright::{Checker, HasDiscoveries, Model};
 
+use crate::precedence::Policy;
 use model::MissionModel;
 use ways_to_idle::stranded;
+
+/// The published variant and policy.
+fn published(users: usize, deferrals: u8) -> MissionModel {
+    MissionModel::new(users, deferrals, Options::default(), None)
+}
 
 /// What a run came to.
 struct Run {
@@ -92,17 +99,36 @@ fn assert_sound(run: &Run) {
 
 #[test]
 fn two_users_exhaustively() {
-    assert_sound(&explore("two users", MissionModel::new(2, 2, None), Extent::Everything));
+    assert_sound(&explore("two users", published(2, 2), Extent::Everything));
 }
 
 #[test]
 fn three_users_in_bound() {
     let bound = std::env::var("SELFNEG_CHECK_DEPTH").map_or(5, |depth| depth.parse().unwrap());
-    assert_sound(&explore("three users", MissionModel::new(3, 2, None), Extent::Events(bound)));
+    assert_sound(&explore("three users", published(3, 2), Extent::Events(bound)));
 }
 
 #[test]
 #[ignore = "half a minute with: cargo test --release --lib mission::check -- --ignored --nocapture"]
 fn three_users_exhaustively() {
-    assert_sound(&explore("three users", MissionModel::new(3, 2, None), Extent::Everything));
+    assert_sound(&explore("three users", published(3, 2), Extent::Everything));
+}
+
+#[test]
+#[ignore = "minutes with: cargo test --release --lib mission::check -- --ignored --nocapture"]
+fn other_variants_exhaustively() {
+    let surplus = Options {
+        tie: TieRule::Surplus,
+        fallback: Fallback::Utilitarian,
+        aggregation: Aggregation::PerDisposition,
+        willingness: 2,
+        ..Options::default()
+    };
+    let literal = Options { quit: QuitRule::Literal, ..Options::default() };
+    let model = MissionModel::new(3, 2, surplus, Some(Policy::Condorcet));
+    assert_sound(&explore("three users, condorcet, surplus", model, Extent::Everything));
+    let model = MissionModel::new(2, 2, literal, None);
+    assert_sound(&explore("two users, literal", model, Extent::Everything));
+    assert_sound(&explore("two users, four deferrals", published(2, 4), Extent::Everything));
+    assert_sound(&explore("three users, three deferrals", published(3, 3), Extent::Everything));
 }

@@ -17,6 +17,7 @@ use crate::mission::machine::State;
 use crate::mission::record::Served;
 use crate::mission::request_queue::Stage;
 use crate::mission::specification::{Category, Goal, Limits, Proof, Specification, Task};
+use crate::precedence::Policy;
 
 /// What is explored.
 pub(super) struct MissionModel {
@@ -45,7 +46,7 @@ pub(super) struct Situation {
 }
 
 impl MissionModel {
-    pub(super) fn new(users: usize, deferrals: u8, fault: Option<Fault>) -> Self {
+    pub(super) fn new(users: usize, deferrals: u8, options: Options, policy: Option<Policy>) -> Self {
         let activation: Vec<String> = (0..MOST_USERS)
             .flat_map(|user| (0..2).map(move |nth| format!("\"c{user}{nth}\": [\"D{user}\"]")))
             .collect();
@@ -74,8 +75,8 @@ impl MissionModel {
             },
             ..Specification::default()
         };
-        let rules = MissionRules::new(&rules.unwrap(), specification, Options::default(), None).unwrap();
-        Self { rules, users, fault, explored: Mutex::default() }
+        let rules = MissionRules::new(&rules.unwrap(), specification, options, policy).unwrap();
+        Self { rules, users, fault: None, explored: Mutex::default() }
     }
 }
 

@@ -1,10 +1,11 @@
 //! Each property is seen to fail: one rule is taken out of the same machine.
 
 use super::super::fault::Fault;
-use super::{Extent, MissionModel, Run, explore};
+use super::{Extent, MissionModel, Run, explore, published};
 
 fn sabotaged(fault: Fault, extent: Extent) -> Run {
-    explore(&format!("two users, {fault:?}"), MissionModel::new(2, 2, Some(fault)), extent)
+    let model = MissionModel { fault: Some(fault), ..published(2, 2) };
+    explore(&format!("two users, {fault:?}"), model, extent)
 }
 
 /// The properties that the first failing exploration step found violated.
