@@ -90,6 +90,17 @@ mod memory {
     }
 
     #[test]
+    fn an_interrupter_without_precedence_is_served_afterwards() {
+        let mut robot = Environment::serving(alice());
+        robot.request(BOB, "t2").data(BOB, bob_who_defers()).negotiate();
+        let wait = Command::Wait { user: BOB, why: Waiting::NoPrecedence };
+        assert!(robot.last_has(|o| *o == Output::Command(wait)));
+        assert_eq!(robot.mission.open_requests(), [ALICE, BOB]);
+        robot.finish_goal().data(BOB, bob_who_defers());
+        assert_eq!(robot.mission.current_user(), Some(BOB));
+    }
+
+    #[test]
     fn a_deferred_user_who_no_longer_wants_it_is_not_served() {
         let mut robot = bob_wins();
         robot.finish_goal().send(Event::Withdraw { user: ALICE });

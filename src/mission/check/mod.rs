@@ -46,7 +46,7 @@ enum Extent {
     Everything,
     /// Within this many events.
     Events(usize),
-    /// Until a property is violated.
+    /// Within five events, until a property is violated.
     FirstFailure,
 }
 
@@ -58,7 +58,7 @@ fn explore(name: &str, model: MissionModel, extent: Extent) -> Run {
     let checker = match extent {
         Extent::Everything => checker.finish_when(HasDiscoveries::All),
         Extent::Events(events) => checker.finish_when(HasDiscoveries::All).target_max_depth(events + 1),
-        Extent::FirstFailure => checker.finish_when(HasDiscoveries::AnyFailures),
+        Extent::FirstFailure => checker.finish_when(HasDiscoveries::AnyFailures).target_max_depth(6),
     };
     let checker = checker.spawn_bfs().join();
     let mut violated = Vec::new();
