@@ -143,6 +143,39 @@ impl BoundRules {
         row.is_some_and(|row| !row.is_empty())
     }
 
+    /// The index of a condition that the rules, or a user bound to them, have named.
+    #[must_use]
+    pub fn condition(&self, name: &str) -> Option<Condition> {
+        let at = self.conditions.get_index_of(name)?;
+        u16::try_from(at).ok().map(Condition)
+    }
+
+    /// The index of a disposition that the rules name.
+    #[must_use]
+    pub fn disposition(&self, name: &str) -> Option<Disposition> {
+        let at = self.dispositions.get_index_of(name)?;
+        u16::try_from(at).ok().map(Disposition)
+    }
+
+    /// How many dispositions the rules name.
+    #[must_use]
+    pub fn dispositions(&self) -> usize {
+        self.dispositions.len()
+    }
+
+    /// How many conditions the rules, or users bound to them, have named.
+    #[must_use]
+    pub fn conditions(&self) -> usize {
+        self.conditions.len()
+    }
+
+    /// For a listed goal: how often it names each disposition, for
+    /// [`Implication::new`](selfneg_core::Implication::new).
+    #[must_use]
+    pub fn mentions(&self, goal: &str) -> Option<&[u8]> {
+        self.implications.get(goal).map(Vec::as_slice)
+    }
+
     /// The condition's name.
     #[must_use]
     pub fn condition_name(&self, condition: Condition) -> &str {

@@ -38,6 +38,7 @@
 //! | [`mod@replicate`] | rerun the published package against its own logs |
 //! | [`mod@verify`] | every property under every variant, against the expected verdicts |
 //! | [`demo`] | the paper's mall |
+//! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
 #![forbid(unsafe_code)]
 
@@ -46,6 +47,7 @@ pub mod command;
 pub mod demo;
 pub mod input;
 pub mod lint;
+pub mod mission;
 pub mod precedence;
 pub mod record;
 pub mod replicate;

@@ -14,7 +14,7 @@ use crate::binding::{BoundRules, BoundUser};
 use crate::transcript::{Recorder, Round};
 
 /// How bilateral negotiations make a decision among several interrupters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Policy {
     /// The published one, for one or two interrupters.
     Published,

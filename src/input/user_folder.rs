@@ -8,7 +8,7 @@ use super::document::Document;
 use super::error::InputError;
 
 /// What a status says of one condition.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Truth {
     /// It is true of the user.
     True,
