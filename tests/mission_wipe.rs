@@ -14,28 +14,44 @@ use std::os::unix::fs::FileExt;
 
 use mission_environment::{ALICE, BOB, Environment, specification};
 use selfneg::input::{Rules, Truth};
-use selfneg::mission::{LOCATION, Profile, Stated, Text, UserData};
+use selfneg::mission::{LOCATION, NAME_BYTES, Profile, Stated, Text, UserData};
 use selfneg_core::Options;
 
 const MASK: u8 = 0x5a;
 
-/// Words of one user: masked, 24 bytes each.
+/// As long as a name may be.
+const LENGTH: usize = NAME_BYTES;
+
+/// What is searched for is the end of each word: an allocator writes over the beginning of
+/// memory that it gets back, which must not be mistaken for wiping.
+const UNSEARCHED: usize = 24;
+
+/// Words of one user, masked.
 #[derive(Clone, Copy)]
 struct Words {
-    place: [u8; 24],
-    condition: [u8; 24],
+    place: [u8; LENGTH],
+    condition: [u8; LENGTH],
     /// One rank for each disposition.
-    ranks: [u8; 24],
+    ranks: [u8; LENGTH],
 }
 
 impl Words {
     /// Unlike anything else, and never unmasked here.
     fn new(seed: u8) -> Self {
-        let step = |from: usize, by: usize, at: usize, among: usize| {
-            u8::try_from((usize::from(seed) + from + by * at) % among).unwrap()
+        // Without a period, so that no word is found inside another.
+        let random = |from: u32, among: u32| {
+            let mut state = u32::from(seed) * 1_000 + from;
+            move || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                u8::try_from((state >> 16) % among).unwrap()
+            }
         };
-        let letters = |from| std::array::from_fn(|at| (b'a' + step(from, 7, at, 26)) ^ MASK);
-        let ranks = std::array::from_fn(|at| (130 + step(0, 11, at, 120)) ^ MASK);
+        let letters = |from| {
+            let mut next = random(from, 26);
+            std::array::from_fn(|_| (b'a' + next()) ^ MASK)
+        };
+        let mut next = random(9, 120);
+        let ranks = std::array::from_fn(|_| (130 + next()) ^ MASK);
         Self { place: letters(0), condition: letters(5), ranks }
     }
 
@@ -52,6 +68,7 @@ impl Words {
     /// How often each word stands in memory.
     fn found(self) -> [usize; 3] {
         let words = [self.place, self.condition, self.ranks];
+        let words = words.each_ref().map(|word| &word[UNSEARCHED..]);
         let maps = fs::read_to_string("/proc/self/maps").unwrap();
         let memory = File::open("/proc/self/mem").unwrap();
         let mut buffer = vec![0_u8; 1 << 20];
@@ -85,14 +102,14 @@ impl Words {
                     for (word, found) in words.iter().zip(&mut found) {
                         let rest = buffer[start..read].iter();
                         let same = byte ^ MASK == word[0] && read - start >= word.len();
-                        if same && rest.zip(*word).all(|(byte, masked)| byte ^ MASK == *masked) {
+                        if same && rest.zip(word.iter()).all(|(byte, masked)| byte ^ MASK == *masked) {
                             *found += 1;
                         }
                     }
                 }
                 // Words may lie across two pieces.
                 let whole_words = read == length && at + address(read) != before_own;
-                at += address(if whole_words { read - 24 } else { length });
+                at += address(if whole_words { read - LENGTH } else { length });
             }
         }
         buffer.fill(0);
@@ -101,7 +118,7 @@ impl Words {
 }
 
 /// Exactly as long as it needs to be, so that it never grows and leaves a copy behind.
-fn text(masked: &[u8; 24]) -> Text {
+fn text(masked: &[u8; LENGTH]) -> Text {
     let mut text = String::with_capacity(masked.len());
     for byte in masked {
         text.push(char::from(byte ^ MASK));
@@ -110,7 +127,7 @@ fn text(masked: &[u8; 24]) -> Text {
 }
 
 fn robot() -> Environment {
-    let dispositions: Vec<String> = (0..24).map(|at| format!("\"D{at}\"")).collect();
+    let dispositions: Vec<String> = (0..LENGTH).map(|at| format!("\"D{at}\"")).collect();
     let list = dispositions.join(", ");
     let goals: Vec<String> = ["t1", "t2", "t3", "fly"].map(|goal| format!("\"{goal}\": [{list}]")).into();
     let rules = Rules::parse(("a", "{}"), ("i", &format!("{{{}}}", goals.join(", ")))).unwrap();
