@@ -33,6 +33,7 @@
 //! | [`input`] | read the published folders, refuse what is not as expected |
 //! | [`binding`] | names to the engine's indices, and back |
 //! | [`precedence`] | one decision among a current user and any number of interrupters |
+//! | [`mod@optimum`] | what would have been best for all, and how much a decision lost |
 //! | [`transcript`], [`story`], [`record`] | what was observed, told to people, as JSON |
 //! | [`lint`] | what is legal but surely not meant |
 //! | [`mod@replicate`] | rerun the published package against its own logs |
@@ -45,6 +46,7 @@ pub mod command;
 pub mod demo;
 pub mod input;
 pub mod lint;
+pub mod optimum;
 pub mod precedence;
 pub mod record;
 pub mod replicate;

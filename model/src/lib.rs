@@ -23,8 +23,15 @@
 
 mod beats;
 mod condorcet;
+pub mod exact;
+mod impacts;
+pub mod lottery;
+pub mod order;
+mod regret;
 mod welfare;
 
 pub use beats::BeatsGraph;
 pub use condorcet::{Condorcet, Precedence};
+pub use impacts::Impacts;
+pub use regret::{Cause, Decided, Regret};
 pub use welfare::{most_welfare, welfare};

@@ -6,13 +6,18 @@
 mod demo;
 mod lint;
 mod negotiate;
+mod optimum;
 mod options;
+mod present;
 mod replicate;
 
 use std::io;
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
+use selfneg_core::{RulesError, TooManyConditions};
+use selfneg_model::lottery::LotteryError;
+use selfneg_model::order::OrderError;
 use serde::Serialize;
 
 use crate::input::InputError;
@@ -38,6 +43,7 @@ enum Command {
     Demo(demo::Demo),
     Negotiate(negotiate::Negotiate),
     Replicate(replicate::Replicate),
+    Optimum(optimum::Optimum),
     Lint(lint::Lint),
 }
 
@@ -75,6 +81,18 @@ pub enum CommandError {
     /// A package cannot be rerun.
     #[error(transparent)]
     Replicate(#[from] ReplicateError),
+    /// No optimal lottery.
+    #[error(transparent)]
+    Lottery(#[from] LotteryError),
+    /// No optimal order.
+    #[error(transparent)]
+    Order(#[from] OrderError),
+    /// The engine refused the rules.
+    #[error("rules: {0}")]
+    Rules(#[from] RulesError),
+    /// The engine refused a status.
+    #[error("status: {0}")]
+    Status(#[from] TooManyConditions),
     /// The arguments do not fit together.
     #[error("{0}")]
     Arguments(String),
@@ -101,6 +119,7 @@ impl Program {
             Command::Demo(demo) => demo.run(),
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Replicate(replicate) => replicate.run(),
+            Command::Optimum(optimum) => optimum.run(),
             Command::Lint(lint) => lint.run(),
         }
     }
