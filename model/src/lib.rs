@@ -27,8 +27,10 @@ pub mod exact;
 mod impacts;
 pub mod lottery;
 pub mod order;
+pub mod protocol_graph;
 mod regret;
 mod welfare;
+pub mod worst_case;
 
 pub use beats::BeatsGraph;
 pub use condorcet::{Condorcet, Precedence};

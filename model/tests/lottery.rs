@@ -42,7 +42,7 @@ proptest! {
         let lottery = egalitarian(&impacts).unwrap();
         prop_assert!(is_distribution(&lottery.shares));
         let least = (0..impacts.users()).map(|user| expected(&impacts, &lottery.shares, user)).min();
-        prop_assert_eq!(least.unwrap(), lottery.value.clone());
+        prop_assert_eq!(least.as_ref(), Some(&lottery.value));
         prop_assert_eq!(&lottery.value, &lottery.bound);
         // Serving one user for certain, or all with equal chances, does not beat it.
         let even = vec![Rational::new(1.into(), impacts.users().into()); impacts.users()];

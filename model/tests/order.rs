@@ -97,7 +97,7 @@ fn fence(weight: u64) -> PairCosts {
     let mut rows = vec![vec![0_u64; 6]; 6];
     for u in 0..3 {
         rows[u][u + 3] = weight;
-        for other in 0..3 {
+        for other in [0, 1, 2] {
             if other != u {
                 rows[u + 3][other] = weight;
             }
