@@ -136,10 +136,11 @@ impl BoundRules {
         Ok(BoundUser { name: user.name.clone(), goal, end_of_goal, ranks, conditions, mentions })
     }
 
-    /// Whether the activation file has this condition.
+    /// Whether the rules activate anything by this condition.
     #[must_use]
     pub fn activates(&self, condition: &str) -> bool {
-        self.conditions.get_index_of(condition).is_some_and(|at| at < self.activation.len())
+        let row = self.conditions.get_index_of(condition).and_then(|at| self.activation.get(at));
+        row.is_some_and(|row| !row.is_empty())
     }
 
     /// The condition's name.

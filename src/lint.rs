@@ -45,7 +45,7 @@ pub enum Kind {
     RankOutsideScale,
     /// A user's own goal that the rules do not list.
     GoalNotListed,
-    /// A status without any true condition: the user quits at once.
+    /// A status without any true condition: the user has no offer, or only its willingness.
     NothingToOffer,
 }
 
@@ -63,7 +63,9 @@ impl Kind {
             Self::RanksAllEqual => "all ranks are equal, so the profile prefers nothing",
             Self::RankOutsideScale => "ranks outside the paper's scale 1..=5",
             Self::GoalNotListed => "a goal that the rules do not list",
-            Self::NothingToOffer => "no condition is true, so this user quits at once",
+            Self::NothingToOffer => {
+                "no condition is true, so this user quits without an offer (being close to its goal aside)"
+            }
         }
     }
 }
@@ -118,7 +120,12 @@ pub fn lint_rules(rules: &Rules) -> Vec<Finding> {
 /// goal counts, or another one was given in its place.
 #[must_use]
 pub fn lint_user(rules: &Rules, user: &User, own_goal: bool) -> Vec<Finding> {
-    let conditions: HashSet<&str> = rules.activation.iter().map(|(name, _)| name.as_str()).collect();
+    let activating: HashSet<&str> = rules
+        .activation
+        .iter()
+        .filter(|(_, activated)| !activated.is_empty())
+        .map(|(name, _)| name.as_str())
+        .collect();
     let named: BTreeSet<&str> = names_of(&rules.activation).chain(names_of(&rules.implications)).collect();
     let ranked: HashSet<&str> = user.profile.iter().map(|(name, _)| name.as_str()).collect();
     let mut findings = Findings::default();
@@ -129,11 +136,11 @@ pub fn lint_user(rules: &Rules, user: &User, own_goal: bool) -> Vec<Finding> {
             .iter()
             .filter(|(_, truth)| *truth != Truth::Withheld)
             .map(|(name, _)| name.as_str())
-            .filter(|name| !conditions.contains(name) && *name != END_OF_GOAL)
+            .filter(|name| !activating.contains(name) && *name != END_OF_GOAL)
             .map(str::to_owned)
             .collect(),
     );
-    if user.true_conditions().all(|name| name == END_OF_GOAL && !conditions.contains(name)) {
+    if user.true_conditions().all(|name| name == END_OF_GOAL && !activating.contains(name)) {
         findings.0.push(Finding {
             file: user.files.status.clone(),
             kind: Kind::NothingToOffer,

@@ -1,5 +1,6 @@
 //! The `selfneg` program: prints what a command reports.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -7,13 +8,26 @@ use clap::Parser;
 use selfneg::command::{Program, Status};
 
 fn main() -> ExitCode {
-    match Program::parse().run() {
+    let program = match Program::try_parse() {
+        Ok(program) => program,
+        Err(message) => {
+            let asked_for = !message.use_stderr();
+            return match seen(message.print()) {
+                Ok(()) if asked_for => ExitCode::SUCCESS,
+                Err(error) if asked_for => unwritten(&error),
+                _ => ExitCode::from(2),
+            };
+        }
+    };
+    match program.run() {
         Ok(report) => {
-            let warnings: String =
-                report.warnings.iter().map(|warning| format!("warning: {warning}\n")).collect();
-            show(&mut io::stderr(), &warnings);
-            if !show(&mut io::stdout(), &report.output) {
-                return ExitCode::from(2);
+            for warning in &report.warnings {
+                complain("warning", warning);
+            }
+            let mut stdout = io::stdout();
+            let written = stdout.write_all(report.output.as_bytes()).and_then(|()| stdout.flush());
+            if let Err(error) = seen(written) {
+                return unwritten(&error);
             }
             match report.status {
                 Status::Passed => ExitCode::SUCCESS,
@@ -21,17 +35,33 @@ fn main() -> ExitCode {
             }
         }
         Err(error) => {
-            show(&mut io::stderr(), &format!("error: {error}\n"));
+            complain("error", &error.to_string());
             ExitCode::from(2)
         }
     }
 }
 
-/// Writes all of `text`. A reader who has closed the pipe has seen enough, which is not an
-/// error; a full disk is.
-fn show<W: Write>(to: &mut W, text: &str) -> bool {
-    match to.write_all(text.as_bytes()).and_then(|()| to.flush()) {
-        Ok(()) => true,
-        Err(error) => error.kind() == io::ErrorKind::BrokenPipe,
+/// A reader who has closed the pipe has seen enough, which is not an error; a full disk is.
+fn seen(written: io::Result<()>) -> io::Result<()> {
+    written.or_else(|error| if error.kind() == io::ErrorKind::BrokenPipe { Ok(()) } else { Err(error) })
+}
+
+fn unwritten(error: &io::Error) -> ExitCode {
+    complain("error", &format!("standard output: cannot be written: {error}"));
+    ExitCode::from(2)
+}
+
+/// One line on standard error. Names come from files and may hold anything, so control
+/// characters are written as escapes. If nobody takes the line, there is nobody to tell.
+fn complain(kind: &str, text: &str) {
+    let mut line = format!("{kind}: ");
+    for letter in text.chars() {
+        if letter.is_control() {
+            let _ = write!(line, "{}", letter.escape_default());
+        } else {
+            line.push(letter);
+        }
     }
+    line.push('\n');
+    let _ = io::stderr().write_all(line.as_bytes());
 }

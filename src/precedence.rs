@@ -96,7 +96,9 @@ impl Decision {
         self.negotiations.iter().map(|held| u64::from(held.conclusion.rounds)).sum()
     }
 
-    /// How many interrupters there are, given the number of users.
+    /// The outcome's name, as in the published logs, for a decision among `users` users:
+    /// `current`, `no-agreement`, and `interrupting` for two or `interrupting_1`,
+    /// `interrupting_2`, ... for more.
     #[must_use]
     pub fn outcome_name(&self, users: usize) -> String {
         match self.agreement {

@@ -32,7 +32,7 @@ pub fn tell(decision: &Decision, users: &[BoundUser], rules: &BoundRules) -> Str
     if decision.negotiations.len() > 1 {
         let _ = writeln!(story, "\nTogether: {}.", teller.together());
     }
-    let _ = writeln!(story, "\n{}", teller.closing());
+    let _ = writeln!(story, "\n{}\n\n{}", teller.closing(), teller.variant());
     story
 }
 
@@ -63,11 +63,7 @@ impl<'a> Teller<'a> {
                 _ => write!(text, " {} interrupts (goal: {goal}).", user.name),
             };
         }
-        let policy = match self.users.len() {
-            2 => String::new(),
-            _ => format!(", policy {}", self.decision.policy),
-        };
-        let _ = writeln!(text, "\nProtocol variant: {}{policy}", self.decision.options);
+        text.push('\n');
         text
     }
 
@@ -77,19 +73,26 @@ impl<'a> Teller<'a> {
         let number = round.number;
         match round.event {
             Event::Quit => {
-                format!("Round {number:>2}  {sender} has nothing more to disclose and quits.\n")
+                let offered = held.rounds.iter().any(|earlier| {
+                    earlier.number < number && earlier.sender == round.sender && earlier.event != Event::Quit
+                });
+                let nothing = if offered { "nothing more" } else { "nothing" };
+                format!("Round {number:>2}  {sender} has {nothing} to disclose and quits.\n")
             }
             Event::Offer { discloses, weighing, ruling, .. } => {
                 let what = match discloses {
                     Disclosure::Condition(condition) => {
-                        format!("discloses \"{}\"", self.rules.condition_name(condition))
+                        format!("discloses {:?}", self.rules.condition_name(condition))
                     }
                     Disclosure::Willingness => "discloses being close to the end of the goal".to_owned(),
                 };
                 let ruling = match ruling {
+                    Ruling::Accept if held.conclusion.ending == Ending::Tie => "would accept too",
                     Ruling::Accept => "accepts",
                     Ruling::Reject => "rejects",
-                    Ruling::Hold => "would accept, and first makes its own offer of this depth",
+                    Ruling::Hold => {
+                        "would accept, but first makes an offer that discloses as many conditions"
+                    }
                 };
                 format!(
                     "Round {number:>2}  {sender} {what}.\n          To {receiver} this offer is worth {}, \
@@ -113,7 +116,7 @@ impl<'a> Teller<'a> {
             }
             (Ending::HeldOfferStands, Some(winner), Some(loser)) => {
                 format!(
-                    "{winner} rejected the reply, so {winner}'s held offer, acceptable to {loser}, stands"
+                    "{winner} rejected {loser}'s offer, so {winner}'s own, which {loser} would accept, stands"
                 )
             }
             (Ending::Tie, Some(winner), Some(loser)) => format!(
@@ -130,10 +133,13 @@ impl<'a> Teller<'a> {
             (Ending::LiteralQuit(side), ..) if held.conclusion.rounds == 1 && held.rounds_hold_no_offer() => {
                 format!("{} had nothing to offer (literal quit rule)", self.side(held, side))
             }
-            (Ending::LiteralQuit(side), ..) => format!(
-                "{} rejected an offer as deep as its own deepest (literal quit rule)",
-                self.side(held, side)
-            ),
+            (Ending::LiteralQuit(side), ..) => {
+                let quitter = self.side(held, side);
+                format!(
+                    "{quitter} rejected an offer, and none of {quitter}'s own discloses more conditions \
+                     (literal quit rule)"
+                )
+            }
             (Ending::BothQuit | Ending::Accepted | Ending::HeldOfferStands, ..) => {
                 "both ran out of offers".to_owned()
             }
@@ -175,22 +181,65 @@ impl<'a> Teller<'a> {
         parts.join("; ")
     }
 
+    fn variant(&self) -> String {
+        let policy = match self.users.len() {
+            2 => String::new(),
+            _ => format!(", policy {}", self.decision.policy),
+        };
+        let willingness = match self.decision.options.willingness {
+            0 => String::new(),
+            worth => format!(
+                "; {}'s own complete offer includes {worth} for being close to the goal",
+                self.name(0)
+            ),
+        };
+        format!("Protocol variant: {}{policy}{willingness}.", self.decision.options)
+    }
+
+    /// Why the published policy looks where it does, from the current user's negotiations.
+    fn published_reason(&self) -> String {
+        let winner = |nth: usize| {
+            let held = self.decision.negotiations.get(nth)?;
+            Some(match held.conclusion.outcome.winner()? {
+                Side::Current => held.current,
+                Side::Interrupting => held.interrupting,
+            })
+        };
+        let [current, first, second] = [0, 1, 2].map(|user| self.name(user));
+        match (winner(0), winner(1)) {
+            (None, _) => format!("{current} and {first} do not agree, so {current} and {second} decide it"),
+            (_, None) => format!("{current} and {second} do not agree, so {current} and {first} decide it"),
+            (Some(0), Some(0)) => format!("{current} beats both"),
+            (Some(0), Some(winner)) | (Some(winner), Some(0)) => {
+                let winner = self.name(winner);
+                let other = if winner == first { second } else { first };
+                format!("{winner} alone beats {current}, and must beat {other} too")
+            }
+            (Some(_), Some(_)) => {
+                format!("both interrupters beat {current}, so {first} and {second} decide it")
+            }
+        }
+    }
+
     fn closing(&self) -> String {
         let served = self.name(self.decision.served);
         let verb = if self.decision.served == 0 { "keeps" } else { "gets" };
         if self.decision.agreement.is_some() {
-            let by = match (self.users.len(), self.decision.policy) {
-                (2, _) => "",
-                (_, Policy::Published) => ", by the published policy",
-                (_, Policy::Condorcet) => ", who beats everyone else",
+            return match (self.users.len(), self.decision.policy) {
+                (2, _) => format!("Decision: {served} {verb} precedence."),
+                (_, Policy::Published) => {
+                    format!("Decision: {}. {served} {verb} precedence.", self.published_reason())
+                }
+                (_, Policy::Condorcet) => {
+                    format!("Decision: {served}, who beats everyone else, {verb} precedence.")
+                }
             };
-            return format!("Decision: {served} {verb} precedence{by}.");
         }
         let among = match self.decision.candidates.as_slice() {
             candidates if candidates.len() == self.users.len() => String::new(),
             candidates => {
                 let names: Vec<&str> = candidates.iter().map(|&user| self.name(user)).collect();
-                format!(", among those whom nobody outside beats ({})", names.join(", "))
+                format!(", among those whom nobody else beats ({})", names.join(", "))
             }
         };
         let fallback = match self.decision.options.fallback {
@@ -198,11 +247,11 @@ impl<'a> Teller<'a> {
             Fallback::Utilitarian => "whoever's service is worth most to all of them together",
         };
         let why = match (self.users.len(), self.decision.policy) {
-            (2, _) => "nobody's offer was accepted",
-            (_, Policy::Published) => "the published policy gives nobody precedence",
-            (_, Policy::Condorcet) => "nobody beats everyone else",
+            (2, _) => "there is no agreement".to_owned(),
+            (_, Policy::Published) => format!("{}: no agreement", self.published_reason()),
+            (_, Policy::Condorcet) => "nobody beats everyone else".to_owned(),
         };
-        format!("Decision: {why}, so the fallback decides: {fallback}{among}. {served} {verb} precedence.")
+        format!("Decision: {why}. So the fallback decides: {fallback}{among}. {served} {verb} precedence.")
     }
 }
 

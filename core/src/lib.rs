@@ -57,10 +57,11 @@
 //!
 //! # Cost
 //!
-//! A negotiation of users with `a` and `c` true conditions takes at most `a + c + 2` rounds.
+//! A negotiation of users with `a` and `c` offers (true conditions, and one more for
+//! willingness) takes at most `a + c + 2` rounds.
 //! Each condition is weighed once a receiver, in time linear in its activation row; under
 //! [`Aggregation::PerDisposition`] also in the conditions disclosed before it, since there
-//! is no memory to note them in.
+//! is no memory to note them in. [`Activation::new`] is quadratic in the length of a row.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(clippy::arithmetic_side_effects)]

@@ -71,7 +71,7 @@ pub trait Observer {
     }
 
     /// The receiver weighs that offer. Told by the receiver itself: these totals are its
-    /// own, and neither the engine nor the sender gets them.
+    /// own, and no value that the engine or the sender gets holds them.
     fn weighed(&mut self, receiver: Side, weighing: Weighing) {
         let _ = (receiver, weighing);
     }

@@ -14,6 +14,17 @@
 //! constructor. Nothing in this file is visible to the crate alone: the engine sees
 //! exactly what a program outside the crate sees, so what the compiler refuses there
 //! (`core/tests/boundary`) it refuses in the engine too.
+//!
+//! What the types do not rule out, and what keeps the engine from it instead:
+//!
+//! - asking a party for one offer after another without a verdict between them: the
+//!   engine's source has one such call a round (`core/tests/boundary.rs` looks), and
+//!   *bounded disclosure* is a property that is checked of every run;
+//! - giving [`judge`](Party::judge) an observer of the engine's own, which would be told
+//!   the receiver's totals: the engine implements no observer and names no total (same
+//!   test); it passes its caller's observer on;
+//! - the size of a surplus, which a [`Verdict`] carries because the tie rule `surplus`
+//!   needs it, and how many offers a user has, which the quit and tie rules ask for.
 
 use core::marker::PhantomData;
 

@@ -33,7 +33,9 @@ impl<'a> EthicalProfile<'a> {
 }
 
 /// A user's true conditions in their order of disclosure. What is false or withheld is
-/// not in it, so nothing can look at it.
+/// not in it, so nothing can look at it. A condition that stands in it twice is disclosed
+/// twice, and under [`Aggregation::PerCondition`](crate::Aggregation::PerCondition) counts
+/// twice; the readers of the toolkit give each once.
 #[derive(Clone, Copy)]
 pub struct Status<'a> {
     conditions: &'a [Condition],

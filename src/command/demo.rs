@@ -57,7 +57,10 @@ impl Demo {
         fs::create_dir_all(&self.out).map_err(unwritable(&self.out))?;
         let part = self.out.join(format!(".{name}.part"));
         fs::write(&part, text).map_err(unwritable(&part))?;
-        fs::rename(&part, &file).map_err(unwritable(&file))?;
+        fs::rename(&part, &file).map_err(|source| {
+            let _ = fs::remove_file(&part);
+            unwritable(&file)(source)
+        })?;
         Ok(file)
     }
 }

@@ -30,11 +30,11 @@ pub(super) struct Negotiate {
     /// one or two interrupters, condorcet for more]
     #[arg(long, value_name = "POLICY", value_parser = PossibleValuesParser::new(Policy::ALL.iter().map(|value| value.name())).try_map(|name| name.parse::<Policy>()))]
     policy: Option<Policy>,
-    #[command(flatten)]
-    options: ProtocolOptions,
     /// Print one JSON document instead of the story
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    options: ProtocolOptions,
 }
 
 impl Negotiate {

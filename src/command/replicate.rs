@@ -45,7 +45,7 @@ impl Replicate {
     }
 }
 
-/// How many mismatches of a dataset are shown one by one.
+/// How many differences of a kind and dataset are shown one by one.
 const SHOWN: usize = 10;
 
 fn table(replication: &Replication) -> String {
@@ -82,31 +82,66 @@ fn table(replication: &Replication) -> String {
     }
     text.push('\n');
     for dataset in &replication.datasets {
-        for line in dataset.unreadable_lines.iter().take(SHOWN) {
-            let _ = writeln!(text, "{}:{line}: is no run of the published form", dataset.log.display());
-        }
-        for mismatch in dataset.mismatches.iter().take(SHOWN) {
-            let _ = writeln!(
-                text,
-                "{}:{}: {}: logged {} in {} rounds, decided {} in {}",
-                dataset.log.display(),
-                mismatch.line,
-                mismatch.users,
-                mismatch.logged.outcome,
-                mismatch.logged.rounds,
-                mismatch.decided.outcome,
-                mismatch.decided.rounds
-            );
-        }
-        if let Some(more) = dataset.mismatches.len().checked_sub(SHOWN).filter(|&more| more > 0) {
-            let _ = writeln!(text, "{}: and {more} more mismatches (all of them with --json)", dataset.name);
-        }
+        what_differs(&mut text, dataset);
     }
     let verdict = if replication.datasets.iter().all(DatasetReport::matches) {
         "Every run of these logs is reproduced: outcome and rounds."
+    } else if replication.datasets.iter().all(DatasetReport::reproduces_log) {
+        "Every run of these logs is reproduced, but not as the ground truth expects."
     } else {
         "Not every run of these logs is reproduced."
     };
     let _ = writeln!(text, "{verdict}");
     text
+}
+
+/// One line for each difference, up to [`SHOWN`] of a kind.
+fn what_differs(text: &mut String, dataset: &DatasetReport) {
+    let log = dataset.log.display();
+    let unreadable =
+        dataset.unreadable_lines.iter().map(|line| format!("{log}:{line}: is no run of the published form"));
+    list(text, dataset.name, "unreadable lines", unreadable);
+    let mismatches = dataset.mismatches.iter().map(|mismatch| {
+        format!(
+            "{log}:{}: {}: logged {} in {}, decided {} in {}",
+            mismatch.line,
+            mismatch.users,
+            mismatch.logged.outcome,
+            rounds(mismatch.logged.rounds),
+            mismatch.decided.outcome,
+            rounds(mismatch.decided.rounds)
+        )
+    });
+    list(text, dataset.name, "mismatches", mismatches);
+    if let Some(truth) = &dataset.ground_truth {
+        let winner = |winner: &Option<String>| winner.clone().unwrap_or_else(|| "no agreement".to_owned());
+        let disagreements = truth.disagreements.iter().map(|differs| {
+            format!(
+                "{}:{}: {}: expected {}, decided {}",
+                truth.file.display(),
+                differs.line,
+                differs.users,
+                winner(&differs.expected),
+                winner(&differs.decided)
+            )
+        });
+        list(text, dataset.name, "disagreements with the ground truth", disagreements);
+    }
+}
+
+fn list<I: ExactSizeIterator<Item = String>>(text: &mut String, dataset: &str, what: &str, lines: I) {
+    let more = lines.len().saturating_sub(SHOWN);
+    for line in lines.take(SHOWN) {
+        let _ = writeln!(text, "{line}");
+    }
+    if more > 0 {
+        let _ = writeln!(text, "{dataset}: and {more} more {what} (all of them with --json)");
+    }
+}
+
+fn rounds(count: u64) -> String {
+    match count {
+        1 => "1 round".to_owned(),
+        count => format!("{count} rounds"),
+    }
 }

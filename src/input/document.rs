@@ -4,7 +4,7 @@ use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 use serde_json::Number;
 
 use super::error::InputError;
@@ -21,7 +21,8 @@ pub(super) struct Document {
 pub(super) struct Node<'a> {
     file: &'a Path,
     parent: Option<&'a Node<'a>>,
-    key: &'a str,
+    /// `None` for the whole document and for the items of a list.
+    key: Option<&'a str>,
     value: &'a Value,
 }
 
@@ -43,6 +44,11 @@ impl Document {
     }
 
     pub(super) fn parse(file: PathBuf, text: &str) -> Result<Self, InputError> {
+        // Invisible in most editors, so the parser's own words would not help.
+        if text.starts_with('\u{feff}') {
+            let message = "begins with a byte order mark, expected UTF-8 without one".to_owned();
+            return Err(InputError::NotJson { file, message });
+        }
         let root = serde_json::from_str(text)
             .map_err(|error| InputError::NotJson { file: file.clone(), message: error.to_string() })?;
         let document = Self { file, root };
@@ -51,7 +57,7 @@ impl Document {
     }
 
     pub(super) fn root(&self) -> Node<'_> {
-        Node { file: &self.file, parent: None, key: "", value: &self.root }
+        Node { file: &self.file, parent: None, key: None, value: &self.root }
     }
 
     pub(super) fn missing(&self, key: &str, expected: &'static str) -> InputError {
@@ -67,7 +73,7 @@ impl<'a> Node<'a> {
     ) -> Result<impl Iterator<Item = (&'a str, Node<'a>)>, InputError> {
         match self.value {
             Value::Object(entries) => {
-                Ok(entries.iter().map(|(key, value)| (key.as_str(), self.child(key, value))))
+                Ok(entries.iter().map(|(key, value)| (key.as_str(), self.child(Some(key), value))))
             }
             _ => Err(self.unexpected(expected)),
         }
@@ -91,7 +97,7 @@ impl<'a> Node<'a> {
             .iter()
             .map(|item| match item {
                 Value::String(text) => Ok(text.clone()),
-                other => Err(self.child("", other).unexpected("a disposition's name in quotes")),
+                other => Err(self.child(None, other).unexpected("a disposition's name in quotes")),
             })
             .collect()
     }
@@ -122,17 +128,18 @@ impl<'a> Node<'a> {
         }
     }
 
-    fn child<'b>(&'b self, key: &'b str, value: &'b Value) -> Node<'b> {
+    fn child<'b>(&'b self, key: Option<&'b str>, value: &'b Value) -> Node<'b> {
         Node { file: self.file, parent: Some(self), key, value }
     }
 
+    /// The keys that lead here, each followed by a colon and a space.
     fn path(&self) -> String {
-        let above = self.parent.map(Node::path).unwrap_or_default();
-        match (above.is_empty(), self.key.is_empty()) {
-            (true, _) => self.key.to_owned(),
-            (false, true) => above,
-            (false, false) => format!("{above}: {}", self.key),
+        let mut path = self.parent.map(Node::path).unwrap_or_default();
+        if let Some(key) = self.key {
+            path.push_str(&named(key));
+            path.push_str(": ");
         }
+        path
     }
 
     fn refuse_duplicate_keys(&self) -> Result<(), InputError> {
@@ -140,7 +147,7 @@ impl<'a> Node<'a> {
             Value::Object(entries) => {
                 let mut seen = std::collections::HashSet::new();
                 for (key, value) in entries {
-                    let child = self.child(key, value);
+                    let child = self.child(Some(key), value);
                     if !seen.insert(key) {
                         return Err(InputError::DuplicateKey {
                             file: self.file.to_owned(),
@@ -152,11 +159,16 @@ impl<'a> Node<'a> {
                 Ok(())
             }
             Value::Array(items) => {
-                items.iter().try_for_each(|item| self.child("", item).refuse_duplicate_keys())
+                items.iter().try_for_each(|item| self.child(None, item).refuse_duplicate_keys())
             }
             _ => Ok(()),
         }
     }
+}
+
+/// A key as messages show it: in quotes where it could not be told from the text around it.
+fn named(key: &str) -> String {
+    if key.trim().is_empty() || key.contains(char::is_control) { format!("{key:?}") } else { key.to_owned() }
 }
 
 /// As a person would name it in a message: scalars as written, the rest by kind.
@@ -222,8 +234,11 @@ impl<'de> Visitor<'de> for ValueVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Value, A::Error> {
         let mut entries = Vec::new();
-        while let Some(entry) = map.next_entry()? {
-            entries.push(entry);
+        while let Some(key) = map.next_key::<String>()? {
+            // The parser tells line and column; the key is ours to add.
+            let value =
+                map.next_value().map_err(|error| A::Error::custom(format!("{}: {error}", named(&key))))?;
+            entries.push((key, value));
         }
         Ok(Value::Object(entries))
     }

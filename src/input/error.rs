@@ -20,15 +20,15 @@ pub enum InputError {
     NotJson {
         /// The file.
         file: PathBuf,
-        /// The parser's words, with line and column.
+        /// The parser's words, with the keys that lead to the place, line and column.
         message: String,
     },
     /// An object has the same key twice.
-    #[error("{}: {key}: this key stands here twice, expected each key once", file.display())]
+    #[error("{}: {key}this key stands here twice, expected each key once", file.display())]
     DuplicateKey {
         /// The file.
         file: PathBuf,
-        /// The key, with the keys that lead to it.
+        /// The key after the keys that lead to it, each followed by a colon and a space.
         key: String,
     },
     /// A key is missing.
@@ -42,11 +42,12 @@ pub enum InputError {
         expected: &'static str,
     },
     /// A value is of the wrong kind or out of range.
-    #[error("{}: {}expected {expected}, found {found}", file.display(), at(key))]
+    #[error("{}: {key}expected {expected}, found {found}", file.display())]
     Unexpected {
         /// The file.
         file: PathBuf,
-        /// The keys that lead to the value; empty for the whole document.
+        /// The keys that lead to the value, each followed by a colon and a space; empty for
+        /// the whole document.
         key: String,
         /// What should be there.
         expected: &'static str,
@@ -102,10 +103,6 @@ pub enum InputError {
         /// The limit.
         limit: usize,
     },
-}
-
-fn at(key: &str) -> String {
-    if key.is_empty() { String::new() } else { format!("{key}: ") }
 }
 
 /// Names in quotes, separated by commas.

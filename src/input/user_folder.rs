@@ -64,15 +64,16 @@ impl UserFiles {
     }
 }
 
-/// A user folder's own name, also of `.` or `A/`.
+/// A user folder's own name as it is given, or for `.` and the like the folder's real one.
 ///
 /// # Errors
 /// [`InputError`] if the path does not exist or has no name (`/`).
 pub fn folder_name(folder: &Path) -> Result<String, InputError> {
-    let whole =
+    let real =
         folder.canonicalize().map_err(|source| InputError::Unreadable { file: folder.to_owned(), source })?;
-    whole
+    folder
         .file_name()
+        .or(real.file_name())
         .map(|name| name.to_string_lossy().into_owned())
         .ok_or_else(|| InputError::NoFolderName { folder: folder.to_owned() })
 }

@@ -77,6 +77,23 @@ pub struct GroundTruthReport {
     pub cases: usize,
     /// Runs that meet it.
     pub agree: usize,
+    /// The table.
+    pub file: PathBuf,
+    /// The runs that do not, one by one.
+    pub disagreements: Vec<Disagreement>,
+}
+
+/// A run that does not end as the ground truth expects.
+#[derive(Debug, Serialize)]
+pub struct Disagreement {
+    /// The line of the table, from 1.
+    pub line: usize,
+    /// Who took part, the current user first.
+    pub users: String,
+    /// The expected winner; `None` is no agreement.
+    pub expected: Option<String>,
+    /// The engine's; `None` is no agreement.
+    pub decided: Option<String>,
 }
 
 /// A run that does not match its log line.
@@ -102,13 +119,17 @@ pub struct Ended {
 }
 
 impl DatasetReport {
-    /// Whether everything matches.
+    /// Whether everything matches; a ground truth that says nothing of any run does not.
     #[must_use]
     pub fn matches(&self) -> bool {
-        self.outcome_mismatches == 0
-            && self.round_mismatches == 0
-            && self.unreadable_lines.is_empty()
-            && self.ground_truth.as_ref().is_none_or(|truth| truth.agree == truth.cases)
+        self.reproduces_log()
+            && self.ground_truth.as_ref().is_none_or(|truth| truth.cases > 0 && truth.agree == truth.cases)
+    }
+
+    /// Whether every line of the log is a run that the engine decides in the same way.
+    #[must_use]
+    pub fn reproduces_log(&self) -> bool {
+        self.outcome_mismatches == 0 && self.round_mismatches == 0 && self.unreadable_lines.is_empty()
     }
 }
 
@@ -134,6 +155,12 @@ pub enum ReplicateError {
         folder: PathBuf,
         /// Why.
         source: io::Error,
+    },
+    /// A log without any line: nothing would be checked.
+    #[error("{}: holds no run, expected one in each line", log.display())]
+    NoRuns {
+        /// The log.
+        log: PathBuf,
     },
     /// A line of a log names users who are not there.
     #[error("{}:{line}: {problem}", log.display())]
@@ -221,7 +248,12 @@ fn rerun<F: FnMut()>(
 ) -> Result<DatasetReport, ReplicateError> {
     let mut mismatches = Vec::new();
     let (mut outcome_mismatches, mut round_mismatches, mut literal_quit_differs) = (0usize, 0usize, 0usize);
-    let mut expected = GroundTruthReport { cases: 0, agree: 0 };
+    let mut ground_truth = truth.map(|truth| GroundTruthReport {
+        cases: 0,
+        agree: 0,
+        file: truth.file.clone(),
+        disagreements: Vec::new(),
+    });
     let mut groups: BTreeMap<BTreeSet<usize>, &LoggedCase> = BTreeMap::new();
     for case in &dataset.cases {
         let decision = decide(dataset, case, &case.users, QuitRule::Exhausted)?;
@@ -239,11 +271,21 @@ fn rerun<F: FnMut()>(
         if decided != logged {
             mismatches.push(Mismatch { line: case.line, users: dataset.label(case), logged, decided });
         }
-        if let Some(winner) = truth.and_then(|truth| truth.winner(&dataset.names(case))) {
-            expected.cases = expected.cases.saturating_add(1);
-            let agreed = decision.agreement.and_then(|user| dataset.names(case).get(user).copied());
-            if winner == agreed {
-                expected.agree = expected.agree.saturating_add(1);
+        let names = dataset.names(case);
+        if let (Some(report), Some(cell)) =
+            (&mut ground_truth, truth.and_then(|truth| truth.expected(&names)))
+        {
+            let decided = decision.agreement.and_then(|user| names.get(user)).map(|&name| name.to_owned());
+            report.cases = report.cases.saturating_add(1);
+            if decided == cell.winner {
+                report.agree = report.agree.saturating_add(1);
+            } else {
+                report.disagreements.push(Disagreement {
+                    line: cell.line,
+                    users: dataset.label(case),
+                    expected: cell.winner.clone(),
+                    decided,
+                });
             }
         }
         if decide(dataset, case, &case.users, QuitRule::Literal)?.agreement != decision.agreement {
@@ -265,7 +307,7 @@ fn rerun<F: FnMut()>(
         cases: dataset.cases.len(),
         outcome_mismatches,
         round_mismatches,
-        ground_truth: truth.map(|_| expected),
+        ground_truth,
         pairs: twos,
         order_dependent_pairs: twos.map(|_| order_dependent),
         triples: threes,

@@ -109,6 +109,9 @@ impl Dataset {
                 None => unreadable_lines.push(line),
             }
         }
+        if cases.is_empty() && unreadable_lines.is_empty() {
+            return Err(ReplicateError::NoRuns { log });
+        }
         let Reader { bound, findings, users, .. } = reader;
         Ok(Self { layout, log, rules: bound, cases, unreadable_lines, findings, users })
     }

@@ -27,6 +27,7 @@ pub(super) fn summarised(findings: &[Finding]) -> Vec<String> {
             let finding = Finding { file: (*example).clone(), kind, names: names.to_vec() };
             lines.push(match count {
                 1 => finding.to_string(),
+                2 => format!("{finding} (and likewise in another file)"),
                 _ => format!("{finding} (and likewise in {} other files)", count.saturating_sub(1)),
             });
         }
