@@ -34,6 +34,7 @@
 //! | [`binding`] | names to the engine's indices, and back |
 //! | [`precedence`] | one decision among a current user and any number of interrupters |
 //! | [`mod@optimum`] | what would have been best for all, and how much a decision lost |
+//! | [`mod@regret`] | how much a protocol variant loses at most, over a whole domain |
 //! | [`transcript`], [`story`], [`record`] | what was observed, told to people, as JSON |
 //! | [`lint`] | what is legal but surely not meant |
 //! | [`mod@replicate`] | rerun the published package against its own logs |
@@ -49,6 +50,7 @@ pub mod lint;
 pub mod optimum;
 pub mod precedence;
 pub mod record;
+pub mod regret;
 pub mod replicate;
 pub mod story;
 pub mod transcript;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use indexmap::IndexMap;
 use selfneg_core::Options;
-use selfneg_model::exact::{Rational, rational};
+use selfneg_model::exact::{Rational, decimal, rational};
 use selfneg_model::lottery::{self, Lottery, LotteryError, NashLottery};
 use selfneg_model::order::{self, Order, OrderError, PairCosts, Proof};
 use selfneg_model::{BeatsGraph, Decided, Impacts, Regret};
@@ -147,7 +147,10 @@ impl Optimum {
             if self.nash.factor == rational(1) {
                 "proved optimal".to_owned()
             } else {
-                format!("proved within a factor of {} of the best geometric mean", self.nash.factor)
+                format!(
+                    "proved within a factor of {} of the best geometric mean",
+                    decimal(&self.nash.factor, 9)
+                )
             }
         );
         let _ = writeln!(text, "\nIn which order:");
@@ -278,11 +281,7 @@ fn worth(lottery: &Lottery, what: &str) -> String {
 /// Fractions of long numbers say nothing to people.
 fn short(number: &Rational) -> String {
     let exact = number.to_string();
-    if exact.len() <= 12 {
-        return exact;
-    }
-    let thousandths = (number * rational(1000)).round().to_integer();
-    format!("about {}/1000", thousandths)
+    if exact.len() <= 9 { exact } else { format!("about {}", decimal(number, 4)) }
 }
 
 /// What `selfneg optimum --json` prints. Rational numbers are written `p/q`.

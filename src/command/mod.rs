@@ -9,6 +9,8 @@ mod negotiate;
 mod optimum;
 mod options;
 mod present;
+mod rank_range;
+mod regret;
 mod replicate;
 
 use std::io;
@@ -22,6 +24,7 @@ use serde::Serialize;
 
 use crate::input::InputError;
 use crate::precedence::PrecedenceError;
+use crate::regret::RegretError;
 use crate::replicate::ReplicateError;
 
 /// Who gets the robot? Ethical decisions between interrupting users.
@@ -44,6 +47,7 @@ enum Command {
     Negotiate(negotiate::Negotiate),
     Replicate(replicate::Replicate),
     Optimum(optimum::Optimum),
+    Regret(regret::Regret),
     Lint(lint::Lint),
 }
 
@@ -87,6 +91,9 @@ pub enum CommandError {
     /// No optimal order.
     #[error(transparent)]
     Order(#[from] OrderError),
+    /// The worst case is not known.
+    #[error(transparent)]
+    Regret(#[from] RegretError),
     /// The engine refused the rules.
     #[error("rules: {0}")]
     Rules(#[from] RulesError),
@@ -120,6 +127,7 @@ impl Program {
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Replicate(replicate) => replicate.run(),
             Command::Optimum(optimum) => optimum.run(),
+            Command::Regret(regret) => regret.run(),
             Command::Lint(lint) => lint.run(),
         }
     }

@@ -8,5 +8,5 @@ mod solve;
 
 pub use certificate::{Certificate, Certified, Refusal, check, check_infeasible};
 pub use programme::{LinearProgramme, Relation, Row, Variable};
-pub use rational::{Rational, fraction_near, rational};
+pub use rational::{Rational, decimal, fraction_near, rational};
 pub use solve::{Attempt, SolveError, solve};

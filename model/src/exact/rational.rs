@@ -13,6 +13,19 @@ pub fn rational<N: Into<BigInt>>(whole: N) -> Rational {
     Rational::from_integer(whole.into())
 }
 
+/// The number with so many decimals, rounded to the nearest.
+#[must_use]
+pub fn decimal(exact: &Rational, places: usize) -> String {
+    let scale = (0..places).fold(BigInt::one(), |scale, _| scale * 10);
+    let scaled = (exact * Rational::from_integer(scale)).round().to_integer();
+    let sign = if scaled.is_negative() { "-" } else { "" };
+    let digits = format!("{:0>width$}", scaled.magnitude().to_string(), width = places + 1);
+    match digits.split_at_checked(digits.len() - places) {
+        Some((whole, part)) if places > 0 => format!("{sign}{whole}.{part}"),
+        _ => format!("{sign}{digits}"),
+    }
+}
+
 /// The nearest floating-point number. Beyond their range: infinite.
 pub(super) fn float(exact: &Rational) -> f64 {
     exact.to_f64().unwrap_or(if exact.is_negative() { f64::NEG_INFINITY } else { f64::INFINITY })
@@ -51,6 +64,17 @@ mod tests {
         assert_eq!(fraction_near(-1.0 / 3.0, 1e-9), Some(-third));
         assert_eq!(fraction_near(1e-12, 1e-9), Some(Rational::zero()));
         assert_eq!(fraction_near(f64::NAN, 1e-9), None);
+    }
+
+    #[test]
+    fn decimals_are_rounded() {
+        let written = |numerator: i64, denominator: i64, places| {
+            decimal(&Rational::new(numerator.into(), denominator.into()), places)
+        };
+        assert_eq!(written(1, 3, 4), "0.3333");
+        assert_eq!(written(-200, 3, 2), "-66.67");
+        assert_eq!(written(1, 200, 3), "0.005");
+        assert_eq!(written(7, 2, 0), "4");
     }
 
     #[test]
