@@ -132,6 +132,14 @@ impl RegretSurvey {
         self.real.by_cause.values().map(|worst| worst.supremum.clone()).max().unwrap_or_else(|| rational(0))
     }
 
+    /// The same for people, who are told if it is not attained.
+    #[must_use]
+    pub fn real_max_text(&self) -> String {
+        let attained = |worst: &worst_case::Worst| worst.attained && worst.supremum == self.real_max();
+        let supremum = self.real_max().to_string();
+        if self.real.by_cause.values().any(attained) { supremum } else { format!("below {supremum}") }
+    }
+
     /// Whether everything is proved, and no pair of the sweep loses more than the linear
     /// programmes allow it.
     #[must_use]

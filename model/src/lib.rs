@@ -23,6 +23,7 @@
 
 mod beats;
 mod condorcet;
+pub mod drawing;
 pub mod exact;
 mod impacts;
 pub mod lottery;

@@ -4,6 +4,7 @@
 //! everything was right. Printing and exit codes are left to the program.
 
 mod demo;
+mod graph;
 mod lint;
 mod negotiate;
 mod optimum;
@@ -48,6 +49,7 @@ enum Command {
     Replicate(replicate::Replicate),
     Optimum(optimum::Optimum),
     Regret(regret::Regret),
+    Graph(graph::Graph),
     Lint(lint::Lint),
 }
 
@@ -128,6 +130,7 @@ impl Program {
             Command::Replicate(replicate) => replicate.run(),
             Command::Optimum(optimum) => optimum.run(),
             Command::Regret(regret) => regret.run(),
+            Command::Graph(graph) => graph.run(),
             Command::Lint(lint) => lint.run(),
         }
     }

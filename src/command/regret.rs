@@ -105,7 +105,7 @@ fn table(surveys: &[RegretSurvey]) -> String {
             survey.losing(),
             decimal(&survey.mean(), 6),
             survey.whole_max(),
-            survey.real_max().to_string()
+            survey.real_max_text()
         );
     }
     let pairs = surveys.first().map_or(0, |survey| survey.pairs);
