@@ -9,6 +9,7 @@ mod lint;
 mod negotiate;
 mod optimum;
 mod options;
+mod policies;
 mod present;
 mod rank_range;
 mod regret;
@@ -24,6 +25,7 @@ use selfneg_model::order::OrderError;
 use serde::Serialize;
 
 use crate::input::InputError;
+use crate::policies::PoliciesError;
 use crate::precedence::PrecedenceError;
 use crate::regret::RegretError;
 use crate::replicate::ReplicateError;
@@ -49,6 +51,7 @@ enum Command {
     Replicate(replicate::Replicate),
     Optimum(optimum::Optimum),
     Regret(regret::Regret),
+    Policies(policies::Policies),
     Graph(graph::Graph),
     Lint(lint::Lint),
 }
@@ -93,6 +96,9 @@ pub enum CommandError {
     /// No optimal order.
     #[error(transparent)]
     Order(#[from] OrderError),
+    /// The policies cannot be compared.
+    #[error(transparent)]
+    Policies(#[from] PoliciesError),
     /// The worst case is not known.
     #[error(transparent)]
     Regret(#[from] RegretError),
@@ -131,6 +137,7 @@ impl Program {
             Command::Optimum(optimum) => optimum.run(),
             Command::Regret(regret) => regret.run(),
             Command::Graph(graph) => graph.run(),
+            Command::Policies(policies) => policies.run(),
             Command::Lint(lint) => lint.run(),
         }
     }

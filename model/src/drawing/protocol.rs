@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use petgraph::graph::NodeIndex;
 use petgraph::visit::EdgeRef;
-use selfneg_core::{Outcome, Ruling, Side};
+use selfneg_core::{Outcome, Ruling, Side, Turn};
 
 use super::canvas::{Anchor, CURRENT, Canvas, FAINT, INK, INTERRUPTING, NEUTRAL, PATH, Style, text_width};
 use super::quoted;
@@ -54,9 +54,11 @@ impl ProtocolLabels {
                     Side::Interrupting => interrupting,
                 };
                 let depth = made + 1;
+                let quits = usize::from(matches!(turn, Turn::Alone(_)));
+                let round = current + interrupting + quits + 1;
                 let first = match held {
-                    Some(holder) => format!("{}'s offer {depth} is held", self.name(holder)),
-                    None => format!("{current} and {interrupting} disclosed"),
+                    Some(holder) => format!("Round {round}: {}'s offer {depth} is held", self.name(holder)),
+                    None => format!("Round {round}"),
                 };
                 let second = if depth > graph.offers(sender) {
                     format!("{} has no further offer", self.name(sender))
@@ -186,7 +188,7 @@ impl<'a> Picture<'a> {
             .fold(80.0, f64::max)
             + 28.0;
         let spine = 24.0 + pill_width + 50.0 + box_width / 2.0;
-        let aside = spine + box_width + 60.0;
+        let aside = spine + box_width + 120.0;
         let mut picture = Self {
             graph,
             labels,
@@ -272,9 +274,8 @@ impl<'a> Picture<'a> {
             let text = move_name(*edge.weight());
             let middle = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
             let ink = if colour == PATH { PATH } else { NEUTRAL };
-            if straight {
-                canvas.text((middle.0 + 8.0, middle.1 + 4.0), text, Anchor::Start, ink, 11);
-            }
+            let beside = if straight { 8.0 } else { 12.0 };
+            canvas.text((middle.0 + beside, middle.1 + 4.0), text, Anchor::Start, ink, 11);
         }
         let pills = self.pills(node);
         let left = (x - self.spine).abs() < 1.0;
