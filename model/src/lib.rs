@@ -1,4 +1,16 @@
-//! Decisions among many users: the beats-graph, the policy `condorcet`, and welfare.
+//! What a decision is measured against: optimal precedence with exact certificates, the worst
+//! case of regret over all real-valued ranks, and, among many users, who beats whom.
+//!
+//! | module | job |
+//! | --- | --- |
+//! | [`exact`] | linear programmes solved by Clarabel and certified in rationals |
+//! | [`lottery`], [`order`] | whom to serve first, and in which order |
+//! | [`Regret`] | what a decision lost, and what lost it |
+//! | [`protocol_graph`], [`worst_case`] | every way a negotiation can go, and the most it can lose |
+//! | [`BeatsGraph`], [`Condorcet`] | who beats whom, and the policy that follows from it |
+//! | [`drawing`] | both graphs as DOT and SVG |
+//!
+//! # The policy `condorcet`
 //!
 //! ```
 //! use selfneg_core::{Outcome, Side};

@@ -1,7 +1,7 @@
 //! The worst case over real-valued ranks against every case of small whole-number domains,
 //! for every protocol variant, and its instances against the engine.
 
-#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test may panic")]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::indexing_slicing, reason = "a test may panic")]
 
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;

@@ -102,11 +102,7 @@ impl Policies {
         let _ = writeln!(
             text,
             "{:10}  {:>14}  {:>28}  {:>28}",
-            "policy",
-            "agreements",
-            "agreed on a beaten user",
-            "fallback serves a beaten one",
-            "missed who beats all"
+            "policy", "agreements", "agreed on a beaten user", "fallback serves a beaten one"
         );
         for of in served {
             let share = |count: u64| format!("{count} ({})", percent(count, triples.total));
