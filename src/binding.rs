@@ -190,6 +190,12 @@ impl BoundRules {
 }
 
 impl BoundUser {
+    /// The true conditions in their order of disclosure, "end of goal" left out.
+    #[must_use]
+    pub fn conditions(&self) -> &[Condition] {
+        &self.conditions
+    }
+
     /// The engine's view of the user.
     ///
     /// # Errors

@@ -33,6 +33,9 @@
 //! | [`input`] | read the published folders, refuse what is not as expected |
 //! | [`binding`] | names to the engine's indices, and back |
 //! | [`precedence`] | one decision among a current user and any number of interrupters |
+//! | [`mod@optimum`] | what would have been best for all, and how much a decision lost |
+//! | [`mod@regret`] | how much a protocol variant loses at most, over a whole domain |
+//! | [`mod@policies`] | how often the policies for many users serve somebody whom another beats |
 //! | [`transcript`], [`story`], [`record`] | what was observed, told to people, as JSON |
 //! | [`lint`] | what is legal but surely not meant |
 //! | [`mod@replicate`] | rerun the published package against its own logs |
@@ -49,8 +52,11 @@ pub mod demo;
 pub mod input;
 pub mod lint;
 pub mod mission;
+pub mod optimum;
+pub mod policies;
 pub mod precedence;
 pub mod record;
+pub mod regret;
 pub mod replicate;
 pub mod run;
 pub mod story;

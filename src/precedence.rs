@@ -8,7 +8,7 @@ use selfneg_core::{
     Activation, Case, Conclusion, Fallback, Options, Outcome, RulesError, TooManyConditions, UnknownName,
     User,
 };
-use selfneg_model::{Condorcet, most_welfare, welfare};
+use selfneg_model::{BeatsGraph, Condorcet, most_welfare, welfare};
 
 use crate::binding::{BoundRules, BoundUser};
 use crate::transcript::{Recorder, Round};
@@ -174,6 +174,23 @@ pub fn decide(
     };
     let candidates = if agreement.is_some() { Vec::new() } else { candidates };
     Ok(Decision { policy, options, agreement, served, candidates, negotiations: hall.held })
+}
+
+/// Who beats whom if every two of `users` negotiate, the earlier arrival as the current one.
+///
+/// # Errors
+/// [`PrecedenceError`] if the engine refuses the rules or a status.
+pub fn beats(
+    rules: &BoundRules,
+    users: &[BoundUser],
+    options: Options,
+) -> Result<BeatsGraph, PrecedenceError> {
+    let rows = rules.rows();
+    let activation = Activation::new(&rows)?;
+    let users: Vec<User<'_>> = users.iter().map(BoundUser::user).collect::<Result<_, _>>()?;
+    let mut hall = Hall { users: &users, activation, options, held: Vec::new() };
+    let condorcet = Condorcet::negotiate(users.len(), |earlier, later| hall.pair(earlier, later));
+    Ok(condorcet.beats().clone())
 }
 
 /// Where bilateral negotiations are held.

@@ -30,6 +30,10 @@ fn help_is_as_it_was() {
         ("help_negotiate", &["negotiate", "--help"]),
         ("help_replicate", &["replicate", "--help"]),
         ("help_lint", &["lint", "--help"]),
+        ("help_optimum", &["optimum", "--help"]),
+        ("help_regret", &["regret", "--help"]),
+        ("help_policies", &["policies", "--help"]),
+        ("help_graph", &["graph", "--help"]),
     ] {
         let (text, complaint) = printed(arguments, 0);
         assert_eq!(complaint, "");

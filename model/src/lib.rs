@@ -1,4 +1,16 @@
-//! Decisions among many users: the beats-graph, the policy `condorcet`, and welfare.
+//! What a decision is measured against: optimal precedence with exact certificates, the worst
+//! case of regret over all real-valued ranks, and, among many users, who beats whom.
+//!
+//! | module | job |
+//! | --- | --- |
+//! | [`exact`] | linear programmes solved by Clarabel and certified in rationals |
+//! | [`lottery`], [`order`] | whom to serve first, and in which order |
+//! | [`Regret`] | what a decision lost, and what lost it |
+//! | [`protocol_graph`], [`worst_case`] | every way a negotiation can go, and the most it can lose |
+//! | [`BeatsGraph`], [`Condorcet`] | who beats whom, and the policy that follows from it |
+//! | [`drawing`] | both graphs as DOT and SVG |
+//!
+//! # The policy `condorcet`
 //!
 //! ```
 //! use selfneg_core::{Outcome, Side};
@@ -23,8 +35,18 @@
 
 mod beats;
 mod condorcet;
+pub mod drawing;
+pub mod exact;
+mod impacts;
+pub mod lottery;
+pub mod order;
+pub mod protocol_graph;
+mod regret;
 mod welfare;
+pub mod worst_case;
 
 pub use beats::BeatsGraph;
 pub use condorcet::{Condorcet, Precedence};
+pub use impacts::Impacts;
+pub use regret::{Cause, Decided, Regret};
 pub use welfare::{most_welfare, welfare};

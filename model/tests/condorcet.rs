@@ -84,3 +84,41 @@ fn without_users_there_is_nobody_to_serve() {
     let nobody = Condorcet::negotiate(0, |_, _| Outcome::NoAgreement);
     assert_eq!(nobody.precedence(), Precedence::NoAgreement { candidates: vec![] });
 }
+
+#[test]
+fn the_smith_set_is_the_smallest_whose_members_beat_all_others() {
+    for users in 1..=4_usize {
+        for condorcet in every_negotiation(users) {
+            let beats = condorcet.beats();
+            let dominates = |set: usize| {
+                let has = |user: usize| set >> user & 1 == 1;
+                (0..users)
+                    .filter(|&u| has(u))
+                    .all(|u| (0..users).filter(|&v| !has(v)).all(|v| beats.beats(u, v)))
+            };
+            let smallest =
+                (1..1_usize << users).filter(|&set| dominates(set)).min_by_key(|set| set.count_ones());
+            let members: Vec<usize> = (0..users).filter(|u| smallest.unwrap() >> u & 1 == 1).collect();
+            assert_eq!(beats.smith_set(), members);
+            assert!(beats.schwartz_set().iter().all(|user| members.contains(user)));
+        }
+    }
+}
+
+#[test]
+fn a_cycle_is_named_for_every_set_of_users_who_reach_each_other() {
+    for condorcet in every_negotiation(4) {
+        let beats = condorcet.beats();
+        let in_cycle: Vec<usize> = (0..4)
+            .filter(|&u| (0..4).any(|v| v != u && reaches(&condorcet, u, v) && reaches(&condorcet, v, u)))
+            .collect();
+        let cycles = beats.cycles();
+        assert_eq!(cycles.is_empty(), in_cycle.is_empty());
+        for cycle in cycles {
+            assert!(cycle.len() >= 3 && cycle.iter().all(|user| in_cycle.contains(user)));
+            for (at, &user) in cycle.iter().enumerate() {
+                assert!(beats.beats(user, cycle[(at + 1) % cycle.len()]));
+            }
+        }
+    }
+}

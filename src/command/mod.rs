@@ -4,9 +4,15 @@
 //! everything was right. Printing and exit codes are left to the program.
 
 mod demo;
+mod graph;
 mod lint;
 mod negotiate;
+mod optimum;
 mod options;
+mod policies;
+mod present;
+mod rank_range;
+mod regret;
 mod replicate;
 mod verify;
 
@@ -14,10 +20,15 @@ use std::io;
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
+use selfneg_core::{RulesError, TooManyConditions};
+use selfneg_model::lottery::LotteryError;
+use selfneg_model::order::OrderError;
 use serde::Serialize;
 
 use crate::input::InputError;
+use crate::policies::PoliciesError;
 use crate::precedence::PrecedenceError;
+use crate::regret::RegretError;
 use crate::replicate::ReplicateError;
 use crate::verify::VerifyError;
 
@@ -40,6 +51,10 @@ enum Command {
     Demo(demo::Demo),
     Negotiate(negotiate::Negotiate),
     Replicate(replicate::Replicate),
+    Optimum(optimum::Optimum),
+    Regret(regret::Regret),
+    Policies(policies::Policies),
+    Graph(graph::Graph),
     Lint(lint::Lint),
     Verify(verify::Verify),
 }
@@ -81,6 +96,24 @@ pub enum CommandError {
     /// Nothing can be verified.
     #[error(transparent)]
     Verify(#[from] VerifyError),
+    /// No optimal lottery.
+    #[error(transparent)]
+    Lottery(#[from] LotteryError),
+    /// No optimal order.
+    #[error(transparent)]
+    Order(#[from] OrderError),
+    /// The policies cannot be compared.
+    #[error(transparent)]
+    Policies(#[from] PoliciesError),
+    /// The worst case is not known.
+    #[error(transparent)]
+    Regret(#[from] RegretError),
+    /// The engine refused the rules.
+    #[error("rules: {0}")]
+    Rules(#[from] RulesError),
+    /// The engine refused a status.
+    #[error("status: {0}")]
+    Status(#[from] TooManyConditions),
     /// The arguments do not fit together.
     #[error("{0}")]
     Arguments(String),
@@ -107,6 +140,10 @@ impl Program {
             Command::Demo(demo) => demo.run(),
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Replicate(replicate) => replicate.run(),
+            Command::Optimum(optimum) => optimum.run(),
+            Command::Regret(regret) => regret.run(),
+            Command::Graph(graph) => graph.run(),
+            Command::Policies(policies) => policies.run(),
             Command::Lint(lint) => lint.run(),
             Command::Verify(verify) => verify.run(),
         }
