@@ -8,7 +8,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use selfneg_proofs::sweep::Domain;
 
-use super::{CommandError, Report, Status, json};
+use super::{CommandError, Report, Status, json, rank_range};
 use crate::verify::counterexample;
 use crate::verify::table::{by_subject, tell, to_json};
 use crate::verify::{Request, Subject, Verification, VerifyError, verify};
@@ -30,7 +30,7 @@ pub(super) struct Verify {
     #[arg(long, value_name = "N", default_value_t = 6)]
     dispositions: usize,
     /// Ranks of the swept domain
-    #[arg(long, value_name = "A..=B", default_value = "1..=5", value_parser = ranks)]
+    #[arg(long, value_name = "A..=B", default_value = "1..=5", value_parser = rank_range::parse)]
     ranks: RangeInclusive<u8>,
     /// Sweep the published activation with the paper's ranks, and try ten times as many random
     /// cases: some four times as long
@@ -52,17 +52,6 @@ pub(super) struct Verify {
     /// Print one JSON document, with a row for each property and variant
     #[arg(long)]
     json: bool,
-}
-
-/// Reads `1..=5`.
-fn ranks(text: &str) -> Result<RangeInclusive<u8>, String> {
-    let expected = || format!("expected A..=B with ranks from 0 to 255, as in 1..=5, found {text:?}");
-    let (low, high) = text.split_once("..=").ok_or_else(expected)?;
-    let (low, high) = (low.parse().map_err(|_| expected())?, high.parse().map_err(|_| expected())?);
-    if low > high {
-        return Err(expected());
-    }
-    Ok(low..=high)
 }
 
 impl Verify {

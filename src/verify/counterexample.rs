@@ -70,12 +70,6 @@ pub fn arguments(options: &Options) -> String {
 pub fn write(found: &Counterexample, folder: &Path) -> Result<Vec<String>, (PathBuf, io::Error)> {
     let rules = folder.join("rules");
     let dispositions = found.users.iter().map(|user| user.ranks.len()).max().unwrap_or(0);
-    let activation: Map<String, Value> = found
-        .activation
-        .iter()
-        .enumerate()
-        .map(|(nth, row)| (condition(nth), json!(row.iter().map(|d| disposition(*d)).collect::<Vec<_>>())))
-        .collect();
     let names = user_names(found.users.len());
     let mut people: Vec<(String, &OwnedUser)> = names.iter().cloned().zip(&found.users).collect();
     if let Some(altered) = &found.altered {
@@ -84,7 +78,7 @@ pub fn write(found: &Counterexample, folder: &Path) -> Result<Vec<String>, (Path
     }
     let implications: Map<String, Value> =
         people.iter().map(|(name, user)| (format!("goal of {name}"), json!(mentioned(user)))).collect();
-    document(&rules, "disposition_activation.json", &Value::Object(activation))?;
+    document(&rules, "disposition_activation.json", &activation(found))?;
     document(&rules, "ethical_implications.json", &Value::Object(implications))?;
     for (name, user) in &people {
         let ranks: Map<String, Value> = (0..dispositions)
@@ -102,13 +96,12 @@ pub fn write(found: &Counterexample, folder: &Path) -> Result<Vec<String>, (Path
         document(&person, "goal.json", &json!({ "goal": format!("goal of {name}") }))?;
     }
     let run = |people: &[String]| {
-        let folders: Vec<String> =
-            people.iter().map(|name| folder.join(name).display().to_string()).collect();
+        let folders: Vec<String> = people.iter().map(|name| quoted(&folder.join(name))).collect();
         let (current, interrupting) =
             folders.split_first().map_or((String::new(), &[][..]), |(a, b)| (a.clone(), b));
         format!(
             "selfneg negotiate --rules {} --current {current} --interrupting {} {}",
-            rules.display(),
+            quoted(&rules),
             interrupting.join(" "),
             arguments(&found.options)
         )
@@ -137,12 +130,6 @@ pub fn to_json(found: &Counterexample) -> Value {
         let conditions: Vec<String> = user.conditions.iter().map(|c| condition(usize::from(c.0))).collect();
         json!({ "discloses": conditions, "ranks": ranks, "goal_implies": mentioned(user) })
     };
-    let activation: Map<String, Value> = found
-        .activation
-        .iter()
-        .enumerate()
-        .map(|(nth, row)| (condition(nth), json!(row.iter().map(|d| disposition(*d)).collect::<Vec<_>>())))
-        .collect();
     let names = user_names(found.users.len());
     let users: Map<String, Value> =
         names.iter().zip(&found.users).map(|(name, person)| (name.clone(), user(person))).collect();
@@ -150,7 +137,19 @@ pub fn to_json(found: &Counterexample) -> Value {
         .altered
         .as_ref()
         .map(|altered| json!({ "instead_of": names.get(altered.index), "user": user(&altered.user) }));
-    json!({ "activation": activation, "users": users, "second_run": altered, "arguments": arguments(&found.options) })
+    json!({ "activation": activation(found), "users": users, "second_run": altered, "arguments": arguments(&found.options) })
+}
+
+/// A path as a POSIX shell takes it for one word.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:,@%".contains(c);
+    if text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
+}
+
+fn activation(found: &Counterexample) -> Value {
+    let row = |row: &[Disposition]| json!(row.iter().map(|d| disposition(*d)).collect::<Vec<_>>());
+    found.activation.iter().enumerate().map(|(nth, of)| (condition(nth), row(of))).collect()
 }
 
 fn mentioned(user: &OwnedUser) -> Vec<String> {
