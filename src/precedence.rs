@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use selfneg_core::policy::{self, Arrival, Pairing};
 use selfneg_core::{
-    Activation, Case, Conclusion, Fallback, Options, Outcome, RulesError, TooManyConditions, UnknownName,
-    User,
+    Activation, Case, Conclusion, Fallback, Impact, Options, Outcome, RulesError, TooManyConditions,
+    UnknownName, User,
 };
 use selfneg_model::{BeatsGraph, Condorcet, most_welfare, welfare};
 
@@ -70,6 +70,8 @@ pub struct Decision {
     pub served: usize,
     /// Without agreement: the users among whom the fallback chose.
     pub candidates: Vec<usize>,
+    /// W of serving each user: what its complete offer is worth to all of them together.
+    pub welfare: Vec<Impact>,
     /// The bilateral negotiations, in the order in which they were held.
     pub negotiations: Vec<HeldNegotiation>,
 }
@@ -142,7 +144,7 @@ pub fn decide(
     let rows = rules.rows();
     let activation = Activation::new(&rows)?;
     let users: Vec<User<'_>> = users.iter().map(BoundUser::user).collect::<Result<_, _>>()?;
-    let [current, interrupters @ ..] = users.as_slice() else {
+    let [_, interrupters @ ..] = users.as_slice() else {
         return Err(PrecedenceError::NobodyInterrupts);
     };
     let mut hall = Hall { users: &users, activation, options, held: Vec::new() };
@@ -163,17 +165,17 @@ pub fn decide(
             }
         }
     };
-    let worth = |served: usize| {
-        let served = users.get(served).unwrap_or(current);
-        welfare(served, &users, activation, options.aggregation)
-    };
+    let worth: Vec<Impact> =
+        users.iter().map(|served| welfare(served, &users, activation, options.aggregation)).collect();
     let served = match (agreement, options.fallback) {
         (Some(winner), _) => winner,
         (None, Fallback::FirstCome) => candidates.first().copied().unwrap_or(0),
-        (None, Fallback::Utilitarian) => most_welfare(&candidates, worth).unwrap_or(0),
+        (None, Fallback::Utilitarian) => {
+            most_welfare(&candidates, |user| worth.get(user).copied().unwrap_or_default()).unwrap_or(0)
+        }
     };
     let candidates = if agreement.is_some() { Vec::new() } else { candidates };
-    Ok(Decision { policy, options, agreement, served, candidates, negotiations: hall.held })
+    Ok(Decision { policy, options, agreement, served, candidates, welfare: worth, negotiations: hall.held })
 }
 
 /// Who beats whom if every two of `users` negotiate, the earlier arrival as the current one.

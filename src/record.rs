@@ -1,5 +1,6 @@
 //! A decision as one JSON document.
 
+use indexmap::IndexMap;
 use selfneg_core::{Disclosure, Options};
 use serde::Serialize;
 
@@ -16,8 +17,8 @@ pub struct DecisionRecord {
     policy: &'static str,
     options: OptionsRecord,
     variant: String,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
     candidates: Vec<String>,
+    welfare: IndexMap<String, u64>,
     negotiations: Vec<NegotiationRecord>,
 }
 
@@ -68,6 +69,11 @@ impl DecisionRecord {
                 Some(_) => Vec::new(),
                 None => decision.candidates.iter().map(|&user| name(users, user)).collect(),
             },
+            welfare: users
+                .iter()
+                .zip(&decision.welfare)
+                .map(|(user, welfare)| (user.name.clone(), welfare.0))
+                .collect(),
             negotiations: decision
                 .negotiations
                 .iter()

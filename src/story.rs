@@ -239,19 +239,40 @@ impl<'a> Teller<'a> {
             candidates if candidates.len() == self.users.len() => String::new(),
             candidates => {
                 let names: Vec<&str> = candidates.iter().map(|&user| self.name(user)).collect();
-                format!(", among those whom nobody else beats ({})", names.join(", "))
+                let names = names.join(", ");
+                match candidates {
+                    [_] => format!(", among those whom nobody beats ({names})"),
+                    _ => format!(", among {names}, whom nobody outside this group beats"),
+                }
             }
         };
         let fallback = match self.decision.options.fallback {
             Fallback::FirstCome => "first come, first served",
             Fallback::Utilitarian => "whoever's service is worth most to all of them together",
         };
+        let worth = match self.decision.options.fallback {
+            Fallback::FirstCome => String::new(),
+            Fallback::Utilitarian => {
+                let worth: Vec<String> = self
+                    .decision
+                    .candidates
+                    .iter()
+                    .map(|&user| {
+                        let worth = self.decision.welfare.get(user).copied().unwrap_or_default();
+                        format!("{} {worth}", self.name(user))
+                    })
+                    .collect();
+                format!(" ({})", worth.join(", "))
+            }
+        };
         let why = match (self.users.len(), self.decision.policy) {
             (2, _) => "there is no agreement".to_owned(),
             (_, Policy::Published) => format!("{}: no agreement", self.published_reason()),
             (_, Policy::Condorcet) => "nobody beats everyone else".to_owned(),
         };
-        format!("Decision: {why}. So the fallback decides: {fallback}{among}. {served} {verb} precedence.")
+        format!(
+            "Decision: {why}. So the fallback decides: {fallback}{worth}{among}. {served} {verb} precedence."
+        )
     }
 }
 

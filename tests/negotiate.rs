@@ -69,12 +69,14 @@ fn alice_keeps_precedence_over_bob() {
 #[test]
 fn the_document_has_the_promised_keys() {
     let promised = ["outcome", "served", "rounds", "policy", "options", "negotiations"];
-    let ours = ["variant"];
+    let ours = ["variant", "candidates", "welfare"];
     let all: BTreeSet<&str> = promised.into_iter().chain(ours).collect();
     let agreement = decided(&Place::mall(), &["Alice", "Bob"], &[]);
     assert_eq!(keys(&agreement), all);
     let none = decided(&deadlock(), &["C", "I"], &[]);
-    assert_eq!(keys(&none), all.iter().copied().chain(["candidates"]).collect());
+    assert_eq!(keys(&none), all);
+    assert_eq!(agreement["candidates"], serde_json::json!([]));
+    assert_eq!(none["candidates"], serde_json::json!(["C", "I"]));
     for decision in [&agreement, &none] {
         assert_eq!(
             keys(&decision["options"]),

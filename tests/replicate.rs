@@ -320,6 +320,36 @@ fn a_wrong_cell_of_the_ground_truth_is_named() {
     assert_eq!(truth["disagreements"][1]["expected"], Value::Null);
 }
 
+/// A table that says nothing of a run does not vouch for it.
+#[test]
+fn a_ground_truth_that_leaves_runs_out_does_not_pass() {
+    let package = validation_of(&two_users());
+    package.write(TRUTH, ",C,I\nC,--,C\n");
+    let (table, _) = said(&package, 1);
+    assert!(table.contains("1/2"), "{table}");
+    let report = document(&mut replicate(&package), 1);
+    let truth = &dataset(&report, "validation")["ground_truth"];
+    assert_eq!((&truth["cases"], &truth["uncovered"]), (&json!(1), &json!(1)));
+}
+
+/// What a package should hold can be demanded: fewer runs, or none, do not pass.
+#[test]
+fn too_few_runs_do_not_pass_where_a_number_is_demanded() {
+    let package = validation_of(&two_users());
+    replicate(&package).args(["--runs", "validation=2"]).assert().code(0);
+    for (demand, complaint) in [
+        ("validation=90", "warning: validation: found 2 runs, expected 90"),
+        ("scalability=450", "warning: scalability: found 0 runs, expected 450"),
+    ] {
+        let output = replicate(&package).args(["--runs", demand]).assert().code(1).get_output().clone();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(told.contains(complaint), "{told}");
+    }
+    for nonsense in ["validation", "validation=many", "nothing=1"] {
+        replicate(&package).args(["--runs", nonsense]).assert().code(2);
+    }
+}
+
 #[test]
 fn a_ground_truth_that_is_no_table_of_users_is_refused() {
     let package = validation_of(&two_users());
@@ -327,6 +357,7 @@ fn a_ground_truth_that_is_no_table_of_users_is_refused() {
         (",C,I\nC,--\nI,C,--\n", "2: has 1 cells, expected 2"),
         (",C,I\nC,--,C\nI,Eve,--\n", "3: expected I, C or --, found \"Eve\""),
         ("", "1: is empty, expected user names"),
+        (",C,I\nC,--,C\nC,--,C\n", "3: C and I stand here twice, expected each pair once"),
     ] {
         package.write(TRUTH, text);
         let told = refusal(&mut replicate(&package), package.path());

@@ -46,6 +46,9 @@ pub struct Report {
     pub domain: String,
     /// How many cases, or pairs of cases, were looked at.
     pub cases: u128,
+    /// How many classes these cases were covered by: the engine ran on one of each. `None`
+    /// if it ran on every case.
+    pub classes: Option<u64>,
     /// How many of them met the property's premise.
     pub nonvacuous: u128,
     /// How many of them refute it, where that was counted.
@@ -86,6 +89,7 @@ pub fn verify<E: Engine + Sync>(property: Property, options: &Options, engine: &
                 method: "random",
                 domain: random::DOMAIN.to_owned(),
                 cases: search.cases,
+                classes: None,
                 nonvacuous: search.nonvacuous,
                 failing: None,
                 counterexample: search.counterexample,
@@ -136,6 +140,7 @@ pub fn verify_over<E: Engine + Sync>(
         method: "enumeration",
         domain: names.join("; "),
         cases: tally.cases,
+        classes: None,
         nonvacuous: tally.nonvacuous,
         failing: Some(tally.failing),
         counterexample: tally.smallest,
@@ -197,6 +202,7 @@ pub fn verify_swept<E: Engine + Sync>(
                 method: "sweep",
                 domain: name.clone(),
                 cases: checked.pairs,
+                classes: Some(checked.classes),
                 nonvacuous: checked.nonvacuous,
                 failing: Some(checked.failing),
                 counterexample,
@@ -253,6 +259,7 @@ pub fn verify_policy<P: Policy + Sync, E: Engine + Sync>(
             expected,
             method: "outcomes",
             domain: "every triple of bilateral outcomes".to_owned(),
+            classes: None,
             cases: judgements.iter().map(|_| 1_u128).sum(),
             nonvacuous: count(|&judgement| judgement != Judgement::Vacuous),
             failing: Some(failing),
@@ -269,6 +276,7 @@ pub fn verify_policy<P: Policy + Sync, E: Engine + Sync>(
         method: "enumeration",
         domain: domain.name.to_owned(),
         cases: tally.cases,
+        classes: None,
         nonvacuous: tally.nonvacuous,
         failing: Some(tally.failing),
         counterexample: tally.smallest,

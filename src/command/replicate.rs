@@ -7,7 +7,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{CommandError, Report, Status, json};
-use crate::replicate::{DatasetReport, Replication, replicate};
+use crate::replicate::{DatasetReport, Replication, dataset_names, replicate};
 
 /// Rerun a checkout of the published replication package against its own logs
 /// (exit code 1 if anything differs)
@@ -16,9 +16,24 @@ pub(super) struct Replicate {
     /// The package: it has the folders run and results
     #[arg(value_name = "DIR")]
     package: PathBuf,
+    /// Fail unless DATASET (validation, scalability, willingness or multi-lateral) is there and
+    /// has N runs; may be given several times
+    #[arg(long, value_name = "DATASET=N", value_parser = dataset_runs)]
+    runs: Vec<(String, usize)>,
     /// Print one JSON document instead of the table
     #[arg(long)]
     json: bool,
+}
+
+/// Reads `validation=90`.
+fn dataset_runs(text: &str) -> Result<(String, usize), String> {
+    text.split_once('=')
+        .and_then(|(name, runs)| Some((name.to_owned(), runs.parse().ok()?)))
+        .filter(|(name, _)| dataset_names().any(|known| known == name))
+        .ok_or_else(|| {
+            let known: Vec<&str> = dataset_names().collect();
+            format!("expected DATASET=N with one of {}, found {text:?}", known.join(", "))
+        })
 }
 
 impl Replicate {
@@ -34,12 +49,20 @@ impl Replicate {
         })?;
         bar.finish_and_clear();
         let output = if self.json { json(&replication)? } else { table(&replication) };
-        let warnings = replication
+        let mut warnings: Vec<String> = replication
             .datasets
             .iter()
             .flat_map(|dataset| dataset.warnings.iter().map(|text| format!("{}: {text}", dataset.name)))
             .collect();
-        let passed = replication.datasets.iter().all(DatasetReport::matches);
+        let mut passed = replication.datasets.iter().all(DatasetReport::matches);
+        for (name, expected) in &self.runs {
+            let found = replication.datasets.iter().find(|dataset| dataset.name == name);
+            let runs = found.map_or(0, |dataset| dataset.cases);
+            if runs != *expected {
+                passed = false;
+                warnings.push(format!("{name}: found {runs} runs, expected {expected}"));
+            }
+        }
         let status = if passed { Status::Passed } else { Status::Failed };
         Ok(Report { output, warnings, status })
     }
@@ -54,10 +77,9 @@ fn table(replication: &Replication) -> String {
          dataset        runs   outcome   rounds    truth             pairs   would differ\n",
     );
     for dataset in &replication.datasets {
-        let truth = dataset
-            .ground_truth
-            .as_ref()
-            .map_or("-".to_owned(), |truth| format!("{}/{}", truth.agree, truth.cases));
+        let truth = dataset.ground_truth.as_ref().map_or("-".to_owned(), |truth| {
+            format!("{}/{}", truth.agree, truth.cases.saturating_add(truth.uncovered))
+        });
         let order = match (dataset.pairs, dataset.triples) {
             (Some(pairs), _) => format!("{} of {pairs}", dataset.order_dependent_pairs.unwrap_or(0)),
             (None, Some(triples)) => {

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use selfneg_proofs::sweep::Domain;
 
 use super::{CommandError, Report, Status, json, rank_range};
-use crate::verify::counterexample;
+use crate::verify::counterexample::{self, Written};
 use crate::verify::table::{by_subject, tell, to_json};
 use crate::verify::{Request, Subject, Verification, VerifyError, verify};
 
@@ -87,33 +87,35 @@ impl Verify {
             bar.set_message(progress.task);
         })?;
         bar.finish_and_clear();
-        let commands = self.write_counterexamples(&verification)?;
+        let written = self.write_counterexamples(&verification)?;
         let output = if self.json {
-            json(&to_json(&verification))?
+            json(&to_json(&verification, &written))?
         } else {
             let mut text = tell(&verification);
-            text.push_str(&commands);
+            for Written { name, statement, commands } in &written {
+                let _ = writeln!(text, "\n{name} is refuted: {statement}");
+                for command in commands {
+                    let _ = writeln!(text, "  {command}");
+                }
+            }
             text
         };
         let status = if verification.is_as_expected() { Status::Passed } else { Status::Failed };
         Ok(Report { output, warnings: Vec::new(), status })
     }
 
-    /// Writes a smallest counterexample of each property that fails, and says how to run it.
-    fn write_counterexamples(&self, verification: &Verification) -> Result<String, CommandError> {
-        let mut text = String::new();
-        let Some(folder) = &self.write else { return Ok(text) };
+    /// Writes a smallest counterexample of each property that fails.
+    fn write_counterexamples(&self, verification: &Verification) -> Result<Vec<Written>, CommandError> {
+        let mut all = Vec::new();
+        let Some(folder) = &self.write else { return Ok(all) };
         for (subject, rows) in by_subject(&verification.rows) {
             let Some(found) = rows.iter().find_map(|row| row.counterexample()) else { continue };
             let folder = folder.join(subject.name().replace('/', "-"));
-            let commands = counterexample::write(found, &folder)
+            let commands = counterexample::write(found, subject.compares_roles(), &folder)
                 .map_err(|(file, source)| CommandError::Unwritable { file, source })?;
-            let _ = writeln!(text, "\n{} is refuted by", subject.name());
-            for command in commands {
-                let _ = writeln!(text, "  {command}");
-            }
+            all.push(Written { name: subject.name(), statement: subject.statement(), commands });
         }
-        Ok(text)
+        Ok(all)
     }
 }
 

@@ -67,7 +67,12 @@ fn parse(text: &str) -> Result<HashMap<(String, String), Expected>, (usize, Stri
                 let problem = format!("expected {current}, {interrupting} or --, found {cell:?}");
                 return Err((line, problem));
             };
-            winners.insert(((*current).to_owned(), (*interrupting).to_owned()), Expected { line, winner });
+            let pair = ((*current).to_owned(), (*interrupting).to_owned());
+            if winners.insert(pair, Expected { line, winner }).is_some() {
+                let problem =
+                    format!("{current} and {interrupting} stand here twice, expected each pair once");
+                return Err((line, problem));
+            }
         }
     }
     Ok(winners)

@@ -77,6 +77,8 @@ pub struct GroundTruthReport {
     pub cases: usize,
     /// Runs that meet it.
     pub agree: usize,
+    /// Runs that the table says nothing of.
+    pub uncovered: usize,
     /// The table.
     pub file: PathBuf,
     /// The runs that do not, one by one.
@@ -119,11 +121,14 @@ pub struct Ended {
 }
 
 impl DatasetReport {
-    /// Whether everything matches; a ground truth that says nothing of any run does not.
+    /// Whether everything matches; a ground truth that does not cover every run does not.
     #[must_use]
     pub fn matches(&self) -> bool {
         self.reproduces_log()
-            && self.ground_truth.as_ref().is_none_or(|truth| truth.cases > 0 && truth.agree == truth.cases)
+            && self
+                .ground_truth
+                .as_ref()
+                .is_none_or(|truth| truth.uncovered == 0 && truth.agree == truth.cases)
     }
 
     /// Whether every line of the log is a run that the engine decides in the same way.
@@ -194,6 +199,11 @@ pub enum ReplicateError {
     },
 }
 
+/// The names of the datasets that a package can hold.
+pub fn dataset_names() -> impl Iterator<Item = &'static str> {
+    package::LAYOUTS.iter().map(|layout| layout.name)
+}
+
 /// How far a rerun is.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
@@ -251,6 +261,7 @@ fn rerun<F: FnMut()>(
     let mut ground_truth = truth.map(|truth| GroundTruthReport {
         cases: 0,
         agree: 0,
+        uncovered: 0,
         file: truth.file.clone(),
         disagreements: Vec::new(),
     });
@@ -272,9 +283,11 @@ fn rerun<F: FnMut()>(
             mismatches.push(Mismatch { line: case.line, users: dataset.label(case), logged, decided });
         }
         let names = dataset.names(case);
-        if let (Some(report), Some(cell)) =
-            (&mut ground_truth, truth.and_then(|truth| truth.expected(&names)))
-        {
+        let cell = truth.and_then(|truth| truth.expected(&names));
+        if let (Some(report), None) = (&mut ground_truth, cell) {
+            report.uncovered = report.uncovered.saturating_add(1);
+        }
+        if let (Some(report), Some(cell)) = (&mut ground_truth, cell) {
             let decided = decision.agreement.and_then(|user| names.get(user)).map(|&name| name.to_owned());
             report.cases = report.cases.saturating_add(1);
             if decided == cell.winner {

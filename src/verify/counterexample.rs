@@ -9,6 +9,17 @@ use selfneg_core::{Disposition, Options};
 use selfneg_proofs::counterexample::{Counterexample, OwnedUser};
 use serde_json::{Map, Value, json};
 
+/// A counterexample that was written as folders.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// The property that it refutes.
+    pub name: String,
+    /// What the property says, and so what to look for.
+    pub statement: &'static str,
+    /// The commands that run it: once, and if the property compares two runs, twice.
+    pub commands: Vec<String>,
+}
+
 /// The folder names of the users, by arrival.
 #[must_use]
 pub fn user_names(count: usize) -> Vec<String> {
@@ -28,7 +39,9 @@ pub fn describe(found: &Counterexample) -> String {
         .iter()
         .enumerate()
         .map(|(nth, row)| {
-            format!("{} activates {}", condition(nth), list(row.iter().map(|d| disposition(*d))))
+            let activated =
+                if row.is_empty() { "nothing".to_owned() } else { list(row.iter().map(|d| disposition(*d))) };
+            format!("{} activates {activated}", condition(nth))
         })
         .collect();
     let _ = writeln!(text, "      {}", rows.join(", "));
@@ -63,11 +76,16 @@ pub fn arguments(options: &Options) -> String {
 }
 
 /// Writes the counterexample into `folder`: `rules`, one folder a user, and for a two-run
-/// property the user of the second run. Returns the commands that run it again.
+/// property the user of the second run. Returns the commands that run it again; with `swapped`
+/// also with the two users' parts swapped.
 ///
 /// # Errors
 /// The first file that cannot be written, and why.
-pub fn write(found: &Counterexample, folder: &Path) -> Result<Vec<String>, (PathBuf, io::Error)> {
+pub fn write(
+    found: &Counterexample,
+    swapped: bool,
+    folder: &Path,
+) -> Result<Vec<String>, (PathBuf, io::Error)> {
     let rules = folder.join("rules");
     let dispositions = found.users.iter().map(|user| user.ranks.len()).max().unwrap_or(0);
     let names = user_names(found.users.len());
@@ -113,6 +131,10 @@ pub fn write(found: &Counterexample, folder: &Path) -> Result<Vec<String>, (Path
             name.push_str("_altered");
         }
         commands.push(run(&second));
+    }
+    if swapped {
+        let other_way: Vec<String> = names.iter().rev().cloned().collect();
+        commands.push(run(&other_way));
     }
     Ok(commands)
 }

@@ -49,6 +49,12 @@ impl Subject {
         }
     }
 
+    /// Whether it compares a run with the one in which the two users swap their parts.
+    #[must_use]
+    pub const fn compares_roles(self) -> bool {
+        matches!(self, Self::Two(Property::RoleSymmetry | Property::RoleSymmetryException))
+    }
+
     /// What it says, in one sentence.
     #[must_use]
     pub const fn statement(self) -> &'static str {

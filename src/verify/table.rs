@@ -8,7 +8,7 @@ use selfneg_proofs::expected::Verdict;
 use selfneg_proofs::report::Report;
 use serde_json::{Value, json};
 
-use super::counterexample;
+use super::counterexample::{self, Written};
 use super::cover;
 use super::{Row, Subject, Verification};
 
@@ -20,8 +20,8 @@ pub fn tell(verification: &Verification) -> String {
     let _ = writeln!(
         text,
         "Domain: {}: {} ordered pairs of users.\n\
-         Every pair is covered by one of {} classes, and the engine ran on one pair of each, in both\n\
-         roles. The published variant, {}:\n",
+         For these counts every pair is covered by one of {} classes, and the engine ran on one\n\
+         pair of each, in both roles. The published variant, {}:\n",
         verification.domain,
         grouped(counts.pairs),
         grouped(u128::from(counts.classes)),
@@ -64,7 +64,9 @@ pub fn tell(verification: &Verification) -> String {
     let _ = writeln!(
         text,
         "{} verdicts, {verdict}. {:.1} s.\n\
-         \"Every case\" is of the domain named and no other; \"random\" is a sample. Kani was not run.",
+         \"Every case\" is of the domain named and no other; where it says in how many classes (at most,\n\
+         over the variants), the engine ran on one case of each. \"Random\" is a sample. Variants that differ\n\
+         only in what a property does not look at share their cases. Kani was not run.",
         verification.rows.len(),
         verification.time.as_secs_f64()
     );
@@ -73,7 +75,7 @@ pub fn tell(verification: &Verification) -> String {
 
 /// The verification as one JSON document.
 #[must_use]
-pub fn to_json(verification: &Verification) -> Value {
+pub fn to_json(verification: &Verification, written: &[Written]) -> Value {
     let counts = &verification.counts;
     let domain = &verification.domain;
     let properties: Vec<Value> = verification.rows.iter().map(row_to_json).collect();
@@ -96,6 +98,7 @@ pub fn to_json(verification: &Verification) -> Value {
         },
         "as_expected": verification.is_as_expected(),
         "properties": properties,
+        "written": written.iter().map(|written| json!({ "name": written.name, "commands": written.commands })).collect::<Vec<_>>(),
         "seconds": verification.time.as_secs_f64(),
     })
 }
@@ -111,6 +114,7 @@ fn row_to_json(row: &Row) -> Value {
                 "domain": report.domain,
                 "verdict": report.verdict.name(),
                 "cases": report.cases.to_string(),
+                "classes": report.classes.map(|classes| classes.to_string()),
                 "nonvacuous": report.nonvacuous.to_string(),
                 "failing": report.failing.map(|failing| failing.to_string()),
                 "seconds": report.time.as_secs_f64(),
@@ -217,7 +221,10 @@ fn evidence(rows: &[&Row], domains: &mut Domains) -> Vec<String> {
             let cases = grouped(reports.iter().map(|report| report.cases).max().unwrap_or(0));
             let seconds: f64 = reports.iter().map(|report| report.time.as_secs_f64()).sum();
             let what = match method {
-                "sweep" => format!("every case of {cases}, by the sweep"),
+                "sweep" => {
+                    let classes = reports.iter().filter_map(|report| report.classes).max().unwrap_or(0);
+                    format!("every case of {cases}, in {} classes", grouped(u128::from(classes)))
+                }
                 "random" => format!("{cases} random cases"),
                 "outcomes" => format!("every case of {cases}"),
                 _ => format!("every case of {cases}, one by one"),
@@ -226,7 +233,7 @@ fn evidence(rows: &[&Row], domains: &mut Domains) -> Vec<String> {
                 1 => "1 variant".to_owned(),
                 many => format!("each of {many} variants"),
             };
-            format!("{what:<49} {variants:<24} {seconds:>5.1} s  [{}]", domains.number(domain))
+            format!("{what:<58} {variants:<21} {seconds:>5.1} s  [{}]", domains.number(domain))
         })
         .collect()
 }

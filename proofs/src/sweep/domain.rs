@@ -207,7 +207,8 @@ impl fmt::Display for Domain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (dispositions, conditions) = (self.dispositions(), self.conditions());
         if self.conditions.iter().all(|&count| count == 1) {
-            write!(f, "{dispositions} dispositions, one condition each")?;
+            let plural = if dispositions == 1 { "" } else { "s" };
+            write!(f, "{dispositions} disposition{plural}, one condition each")?;
         } else {
             write!(f, "{conditions} conditions on {dispositions} dispositions (")?;
             for (nth, count) in self.conditions.iter().enumerate() {
