@@ -11,8 +11,8 @@ mod situation;
 use proptest::prelude::*;
 use proptest::sample::Index;
 use selfneg_core::{
-    Case, Conclusion, Condition, Disclosure, Impact, Negotiation, Observer, Offer, Options, Party, Ruling,
-    Side, Step, Turn, Verdict, Weighing, party::Role,
+    Case, Conclusion, Condition, Disclosure, Ending, Impact, Negotiation, Observer, Offer, Options, Party,
+    Ruling, Side, Step, Turn, Verdict, Weighing, party::Role,
 };
 
 use situation::{Person, Situation, situations, variants};
@@ -410,4 +410,16 @@ fn rulings_have_names() {
         [Ruling::Accept, Ruling::Reject, Ruling::Hold].map(Ruling::name),
         ["accept", "reject", "hold"]
     );
+}
+
+#[test]
+fn endings_have_names() {
+    use Ending::{Accepted, BothQuit, HeldOfferStands, LiteralQuit, Tie};
+    assert_eq!(
+        [Accepted, HeldOfferStands, Tie, BothQuit].map(Ending::name),
+        ["accepted", "held-offer-stands", "tie", "both-quit"]
+    );
+    for side in [Side::Current, Side::Interrupting] {
+        assert_eq!(LiteralQuit(side).name(), "literal-quit");
+    }
 }

@@ -6,6 +6,7 @@ mod naive;
 mod situation;
 mod small_domain;
 
+use std::error::Error;
 use std::str::FromStr;
 
 use selfneg_core::{
@@ -379,6 +380,7 @@ where
     assert_eq!(all.first(), Some(&T::default()));
     for &value in all {
         assert_eq!(value.to_string(), name(value));
+        assert_eq!(format!("{value:>16}|{value:<16}|"), format!("{0:>16}|{0:<16}|", name(value)));
         assert_eq!(name(value).parse(), Ok(value));
         assert_eq!(name(value).to_uppercase().parse::<T>(), Err(UnknownName));
     }
@@ -391,6 +393,13 @@ fn names_are_those_of_the_command_line_and_are_read_back() {
     names_are_read_back(Aggregation::ALL, &["per-condition", "per-disposition"], Aggregation::name);
     names_are_read_back(TieRule::ALL, &["first-sender", "fallback", "surplus"], TieRule::name);
     names_are_read_back(Fallback::ALL, &["first-come", "utilitarian"], Fallback::name);
+}
+
+#[test]
+fn an_unknown_name_is_refused_in_words() {
+    let error = "exhaustive".parse::<QuitRule>().unwrap_err();
+    assert_eq!(error.to_string(), "no value of this option has that name");
+    assert!(error.source().is_none());
 }
 
 #[test]

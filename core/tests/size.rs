@@ -106,6 +106,15 @@ fn the_largest_total_is_exact() {
     assert!(expected < 1 << 48);
 }
 
+/// As any number is, with the width that the caller asks for.
+#[test]
+fn a_total_is_written_as_a_number() {
+    for total in [0, 7, u64::MAX] {
+        assert_eq!(Impact(total).to_string(), total.to_string());
+        assert_eq!(format!("{:>5}|{:<5}|", Impact(total), Impact(total)), format!("{total:>5}|{total:<5}|"));
+    }
+}
+
 /// A verdict that hangs on the last of 65,535 conditions, with totals of about 2^35, against
 /// 128-bit sums.
 #[test]
@@ -168,6 +177,13 @@ fn a_row_of_more_than_65_535_dispositions_is_refused() {
     let error = refused(&[&[], &row]);
     assert_eq!(error, RulesError::RowTooLong { row: 1 });
     assert_eq!(error.to_string(), "condition 1 activates more than 65535 dispositions");
+}
+
+/// A row of exactly 65,535 is looked into.
+#[test]
+fn a_row_of_65_535_dispositions_is_not_refused_for_its_length() {
+    let row = [Disposition(MOST); MAX_ITEMS];
+    assert_eq!(refused(&[&row]), RulesError::Repeated { row: 0, disposition: Disposition(MOST) });
 }
 
 #[test]
