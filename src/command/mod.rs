@@ -8,10 +8,12 @@ mod lint;
 mod negotiate;
 mod options;
 mod replicate;
+mod simulate;
 mod verify;
 
+use std::fs;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 use serde::Serialize;
@@ -19,6 +21,7 @@ use serde::Serialize;
 use crate::input::InputError;
 use crate::precedence::PrecedenceError;
 use crate::replicate::ReplicateError;
+use crate::scenario::ScenarioError;
 use crate::verify::VerifyError;
 
 /// Who gets the robot? Ethical decisions between interrupting users.
@@ -39,6 +42,7 @@ pub struct Program {
 enum Command {
     Demo(demo::Demo),
     Negotiate(negotiate::Negotiate),
+    Simulate(simulate::Simulate),
     Replicate(replicate::Replicate),
     Lint(lint::Lint),
     Verify(verify::Verify),
@@ -81,6 +85,12 @@ pub enum CommandError {
     /// Nothing can be verified.
     #[error(transparent)]
     Verify(#[from] VerifyError),
+    /// A scenario cannot be run.
+    #[error(transparent)]
+    Scenario(#[from] Box<ScenarioError>),
+    /// Somebody who watches a run cannot go on.
+    #[error("the run cannot be recorded: {0}")]
+    Recording(io::Error),
     /// The arguments do not fit together.
     #[error("{0}")]
     Arguments(String),
@@ -106,6 +116,7 @@ impl Program {
         match &self.command {
             Command::Demo(demo) => demo.run(),
             Command::Negotiate(negotiate) => negotiate.run(),
+            Command::Simulate(simulate) => simulate.run(),
             Command::Replicate(replicate) => replicate.run(),
             Command::Lint(lint) => lint.run(),
             Command::Verify(verify) => verify.run(),
@@ -118,4 +129,23 @@ fn json<T: Serialize>(document: &T) -> Result<String, CommandError> {
     let mut text = serde_json::to_string_pretty(document)?;
     text.push('\n');
     Ok(text)
+}
+
+/// Writes a whole file or leaves what was there. Folders are made if need be.
+fn write_whole(file: &Path, text: &str) -> Result<(), CommandError> {
+    let unwritable = |file: &Path| {
+        let file = file.to_owned();
+        move |source| CommandError::Unwritable { file, source }
+    };
+    let folder = file.parent().unwrap_or(Path::new(""));
+    if !folder.as_os_str().is_empty() {
+        fs::create_dir_all(folder).map_err(unwritable(folder))?;
+    }
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let part = folder.join(format!(".{name}.part"));
+    fs::write(&part, text).map_err(unwritable(&part))?;
+    fs::rename(&part, file).map_err(|source| {
+        let _ = fs::remove_file(&part);
+        unwritable(file)(source)
+    })
 }
