@@ -229,7 +229,10 @@ impl Drawing {
         }
         for (at, labels) in discs {
             let (x, y) = pixel(map, at);
-            self.pill(x + 26.0, y - 22.0, &labels);
+            let half = half_pill(&labels) + 2.0;
+            let width = f64::from(map.width()) * map.resolution() * SCALE;
+            let x = if width > 2.0 * half { (x + 26.0).clamp(half, width - half) } else { x };
+            self.pill(x, y - 22.0, &labels);
         }
         let mut y = f64::from(map.height()) * map.resolution() * SCALE + LINE;
         for mark in marks {
@@ -244,7 +247,7 @@ impl Drawing {
 
     /// A dark label with round ends around its middle.
     fn pill(&mut self, x: f64, y: f64, text: &str) {
-        let half = 6.0 + text.chars().map(|_| 4.2).sum::<f64>();
+        let half = half_pill(text);
         self.line(&format!(
             "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"20\" rx=\"10\" fill=\"#8c2f39\" stroke=\"#fffdf8\" \
              stroke-width=\"1.5\"/><text x=\"{x:.2}\" y=\"{:.2}\" font-size=\"13\" font-weight=\"bold\" fill=\"#fff\" \
@@ -406,6 +409,11 @@ impl Layers {
         }
         path
     }
+}
+
+/// Half the width of a pill around a text.
+fn half_pill(text: &str) -> f64 {
+    6.0 + text.chars().map(|_| 4.2).sum::<f64>()
 }
 
 /// Indices of the occupied cells connected to a cell, if that is occupied and not yet seen.

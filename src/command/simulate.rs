@@ -81,7 +81,7 @@ pub(super) fn play(scenario: &Scenario, realtime: bool) -> Result<Ran, CommandEr
 pub(super) fn told(scenario: &Scenario, ran: &Ran) -> String {
     let mut text = scenario.name.clone();
     if !scenario.about.is_empty() {
-        let _ = write!(text, ": {}", scenario.about.trim());
+        let _ = write!(text, "\n\n{}", scenario.about.trim());
     }
     let _ = write!(text, "\n\n{}\n{}", ran.story.to_text(), summary(&ran.outcome));
     text
@@ -94,11 +94,11 @@ fn summary(outcome: &Outcome) -> String {
         Ended::TimeUp => "the scenario's time is up",
     };
     let mut text = format!(
-        "After {} {why}; the robot drove {:.0} m and decided {} {}.\n",
+        "After {} {why}; the robot drove {:.0} m and made {} {}.\n",
         clock(outcome.after),
         outcome.metres,
         outcome.decisions,
-        if outcome.decisions == 1 { "time" } else { "times" }
+        if outcome.decisions == 1 { "decision" } else { "decisions" }
     );
     for request in &outcome.requests {
         let how = match request.how {

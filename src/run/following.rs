@@ -17,12 +17,14 @@ pub(super) struct Following {
     floor: usize,
     /// Where the robot has been and the person has not, the oldest first.
     way: VecDeque<Point>,
+    /// Where the person has been since the robot set out, the oldest first.
+    walked: Vec<Point>,
 }
 
 impl Following {
     pub(super) fn new(person: &str, world: &World) -> Self {
         let robot = world.robot();
-        Self { person: person.to_owned(), floor: robot.floor, way: VecDeque::from([robot.pose.position]) }
+        Self { person: person.to_owned(), floor: robot.floor, way: VecDeque::from([robot.pose.position]), walked: Vec::new() }
     }
 
     /// Sends the person on. False once the person can follow no longer: on another floor, or
@@ -31,7 +33,7 @@ impl Following {
         let robot = *world.robot();
         let Some(person) = world.person(&self.person) else { return false };
         if person.floor != self.floor || robot.floor != self.floor {
-            self.stop(world);
+            self.stay(world);
             return false;
         }
         let here = person.position;
@@ -39,7 +41,7 @@ impl Following {
             self.way.push_back(robot.pose.position);
         }
         while self.way.len() > 1 && self.way.front().is_some_and(|next| next.distance(here) < 1.5 * STRIDE) {
-            self.way.pop_front();
+            self.walked.extend(self.way.pop_front());
         }
         let mut behind = 0.0;
         let mut last = robot.pose.position;
@@ -55,8 +57,19 @@ impl Following {
         world.send_person(&self.person, waypoints).is_ok()
     }
 
+    /// The robot turns to somebody else: the person walks back to where they met, but not onto
+    /// the spot where the robot stood.
+    pub(super) fn go_back(&self, world: &mut World) {
+        let Some(met) = self.walked.first() else { return self.stay(world) };
+        let far = self.walked.iter().rev().filter(|point| point.distance(*met) >= BEHIND);
+        let waypoints = far.map(|&position| Waypoint { position, wait: 0.0 }).collect();
+        if world.send_person(&self.person, waypoints).is_err() {
+            self.stay(world);
+        }
+    }
+
     /// The person stays where the person is.
-    pub(super) fn stop(&self, world: &mut World) {
+    pub(super) fn stay(&self, world: &mut World) {
         // Nobody walks nowhere through a wall, and a person who is gone need not stop.
         let _ = world.send_person(&self.person, Vec::new());
     }

@@ -302,7 +302,9 @@ impl<'s, 'w, 'a> Runner<'s, 'w, 'a> {
                 if let Some(Executing { what: Work::Driving(_), .. }) = stopped {
                     self.told = sim::Command::Cancel;
                 }
-                self.stop_following();
+                if let Some(following) = self.following.take() {
+                    following.go_back(&mut self.world);
+                }
             }
             Command::NextRound => self.schedule_in(self.scenario.round, Event::NextRound),
             Command::Close { user, how } => {
@@ -343,7 +345,7 @@ impl<'s, 'w, 'a> Runner<'s, 'w, 'a> {
 
     fn stop_following(&mut self) {
         if let Some(following) = self.following.take() {
-            following.stop(&mut self.world);
+            following.stay(&mut self.world);
         }
     }
 

@@ -6,8 +6,8 @@ use std::time::Duration;
 use selfneg_sim::{Picture, Point, World, svg};
 
 use super::storybook::clock;
-use super::watcher::Watcher;
-use crate::mission::{Event, Output, Record};
+use super::watcher::{Setup, Watcher};
+use crate::mission::{Event, Output, Record, UserId};
 
 /// Watches a run and draws it: the robot's way, everybody as they were at the first
 /// interruption, and numbered moments. It names users: personal.
@@ -17,12 +17,22 @@ pub struct Sketch {
     trail: Vec<(usize, Point)>,
     /// Numbered from 1.
     moments: Vec<Moment>,
-    /// The world when the robot was first interrupted, or as it is.
+    /// The world when the robot was first interrupted, or at first if it was not.
     world: Option<World>,
     interrupted: bool,
+    /// `world` is that of the first interruption.
+    settled: bool,
     serving: bool,
-    /// What the next sentence tells is a moment.
-    expecting: bool,
+    /// What the next sentence tells is a moment; it happens there.
+    expecting: Option<(usize, Point)>,
+    /// Where the robot was last seen: floor and position.
+    robot: Option<(usize, Point)>,
+    /// Everybody else as last seen.
+    seen: Vec<(String, usize, Point)>,
+    /// Pseudonyms and people.
+    people: Vec<(UserId, String)>,
+    /// Floor and position of each meeting place.
+    places: Vec<Option<(usize, Point)>>,
 }
 
 #[derive(Clone, Debug)]
@@ -34,6 +44,12 @@ struct Moment {
 }
 
 impl Sketch {
+    /// Where a user was last seen.
+    fn person(&self, user: UserId) -> Option<(usize, Point)> {
+        let (_, name) = self.people.iter().find(|(pseudonym, _)| *pseudonym == user)?;
+        self.seen.iter().find(|(seen, ..)| seen == name).map(|(_, floor, at)| (*floor, *at))
+    }
+
     /// All floors where the robot has been, as an SVG document; empty before the run began.
     #[must_use]
     pub fn to_svg(&self) -> String {
@@ -58,36 +74,51 @@ impl Sketch {
 }
 
 impl Watcher for Sketch {
+    fn begin(&mut self, setup: &Setup<'_>) -> io::Result<()> {
+        let known = setup.participants.iter();
+        self.people = known.map(|known| (known.pseudonym, known.person.clone())).collect();
+        let place = |name: &String| setup.building.place(name).map(|(floor, place)| (floor, place.position));
+        self.places = setup.places.iter().map(place).collect();
+        Ok(())
+    }
+
     fn event(&mut self, _: Duration, event: &Event) -> io::Result<()> {
-        if let Event::Request { .. } | Event::Emergency { .. } = event {
-            self.expecting = true;
-            self.interrupted |= self.serving;
-        }
+        self.expecting = match event {
+            Event::Request { user, .. } => self.person(*user).or(self.robot),
+            Event::Emergency { place, .. } => {
+                let at = usize::try_from(place.0).ok();
+                at.and_then(|at| self.places.get(at)).copied().flatten()
+            }
+            _ => return Ok(()),
+        };
+        self.interrupted |= self.serving;
         Ok(())
     }
 
     fn output(&mut self, _: Duration, output: &Output) -> io::Result<()> {
-        if let Output::Record(record) = output {
-            self.serving |= matches!(record, Record::GoalStarted { .. });
-            self.expecting |= matches!(record, Record::Decided { .. } | Record::GoalEnded { .. });
+        match output {
+            Output::Record(Record::GoalStarted { .. }) => self.serving = true,
+            Output::Record(Record::Decided { .. } | Record::GoalEnded { .. }) => self.expecting = self.robot,
+            _ => {}
         }
         Ok(())
     }
 
     fn world(&mut self, _: Duration, world: &World) -> io::Result<()> {
         let robot = world.robot();
-        self.trail.push((robot.floor, robot.pose.position));
-        if self.world.is_none() || !self.interrupted {
+        self.robot = Some((robot.floor, robot.pose.position));
+        self.trail.extend(self.robot);
+        self.seen = world.people().map(|person| (person.name.clone(), person.floor, person.position)).collect();
+        let first_interruption = self.interrupted && !std::mem::replace(&mut self.settled, self.interrupted);
+        if self.world.is_none() || first_interruption {
             self.world = Some(world.clone());
         }
         Ok(())
     }
 
     fn sentence(&mut self, at: Duration, sentence: &str) -> io::Result<()> {
-        if std::mem::take(&mut self.expecting)
-            && let Some((floor, here)) = self.trail.last().copied()
-        {
-            self.moments.push(Moment { floor, at: here, time: at, sentence: sentence.to_owned() });
+        if let Some((floor, place)) = self.expecting.take() {
+            self.moments.push(Moment { floor, at: place, time: at, sentence: sentence.to_owned() });
         }
         Ok(())
     }
