@@ -386,7 +386,9 @@ impl<'s, 'w, 'a> Runner<'s, 'w, 'a> {
         if self.mission.is_over() {
             return Some(Ended::ShutDown);
         }
-        if self.outstanding.is_empty() && self.mission.is_idle() && self.told == sim::Command::Continue {
+        // Whether the mission is idle is asked last, since it then reads all its memory.
+        let busy = self.executing.is_some() || self.told != sim::Command::Continue;
+        if self.outstanding.is_empty() && !busy && self.mission.is_idle() {
             return Some(Ended::Idle);
         }
         (self.now() >= self.scenario.until).then_some(Ended::TimeUp)
