@@ -114,10 +114,8 @@ fn a_verified_emergency_breaks_a_negotiation_off_and_goes_first() {
     let at = |wanted: &dyn Fn(&Record) -> bool| records.iter().position(|record| wanted(record)).unwrap();
     let unverified = at(&|record| matches!(record, Record::EmergencyUnverified { .. }));
     let certain = at(&|record| matches!(record, Record::EmergencyDecided { .. }));
-    let dropped =
-        at(&|record| matches!(record, Record::NegotiationsDropped { why: Dropped::Emergency }));
-    let started =
-        at(&|record| matches!(record, Record::GoalStarted { served: Served::Emergency(_), .. }));
+    let dropped = at(&|record| matches!(record, Record::NegotiationsDropped { why: Dropped::Emergency }));
+    let started = at(&|record| matches!(record, Record::GoalStarted { served: Served::Emergency(_), .. }));
     let reached = at(&|record| {
         matches!(record, Record::GoalEnded { served: Served::Emergency(_), end: GoalEnd::Reached, .. })
     });
@@ -135,9 +133,10 @@ fn a_verified_emergency_breaks_a_negotiation_off_and_goes_first() {
 fn nobody_is_asked_while_a_task_must_not_be_interrupted() {
     let (outcome, log, story) = played("elevator");
     assert_eq!(outcome.served(), ["Alice", "Bob"]);
-    let asks = log.outputs.iter().position(|(_, output)| {
-        matches!(output, Output::Command(Command::AskData { user: BOB, .. }))
-    });
+    let asks = log
+        .outputs
+        .iter()
+        .position(|(_, output)| matches!(output, Output::Command(Command::AskData { user: BOB, .. })));
     let ride = log.outputs.iter().position(|(_, output)| {
         matches!(output, Output::Record(Record::TaskStarted { task: 1, interruptible: false, .. }))
     });

@@ -24,7 +24,12 @@ pub(super) struct Following {
 impl Following {
     pub(super) fn new(person: &str, world: &World) -> Self {
         let robot = world.robot();
-        Self { person: person.to_owned(), floor: robot.floor, way: VecDeque::from([robot.pose.position]), walked: Vec::new() }
+        Self {
+            person: person.to_owned(),
+            floor: robot.floor,
+            way: VecDeque::from([robot.pose.position]),
+            walked: Vec::new(),
+        }
     }
 
     /// Sends the person on. False once the person can follow no longer: on another floor, or

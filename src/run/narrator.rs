@@ -167,6 +167,9 @@ impl<'a> Narrator<'a> {
             Record::Wiped { left: 1.., user, .. } => {
                 format!("Not everything that {} has told could be wiped from memory.", self.name(*user))
             }
+            Record::GoalStarted { served: Served::Emergency(category), .. } => {
+                format!("The robot turns to the emergency ({}).", self.category(*category))
+            }
             Record::GoalStarted { served, goal } => {
                 format!("The robot begins to serve {}: the {}.", self.served(*served), self.goal(*goal))
             }
@@ -178,6 +181,9 @@ impl<'a> Narrator<'a> {
             }
             Record::Held { .. } => {
                 "The next task may not be interrupted; the robot waits for the decision.".to_owned()
+            }
+            Record::GoalEnded { served: Served::Emergency(category), end: GoalEnd::Reached, .. } => {
+                format!("The robot has done what is to be done ({}).", self.category(*category))
             }
             Record::GoalEnded { served, goal, end } => {
                 let (whom, goal) = (self.served(*served), self.goal(*goal));
@@ -216,11 +222,10 @@ impl<'a> Narrator<'a> {
                 format!("{why}: {} {verb} precedence.", self.name(*served))
             }
             Record::EmergencyDecided { category, .. } => {
-                format!("Decision: {} is certain and goes before everybody.", self.category(*category))
+                format!("Decision: the emergency ({}) is certain and goes first.", self.category(*category))
             }
-            Record::EmergencyUnverified { category, .. } => {
-                let category = self.category(*category);
-                format!("That is not what makes {category} certain: it is recorded and changes nothing.")
+            Record::EmergencyUnverified { .. } => {
+                "That is no proof; it is recorded and changes nothing.".to_owned()
             }
             Record::ShutDown => "The mission has ended.".to_owned(),
             _ => return None,

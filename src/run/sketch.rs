@@ -108,7 +108,8 @@ impl Watcher for Sketch {
         let robot = world.robot();
         self.robot = Some((robot.floor, robot.pose.position));
         self.trail.extend(self.robot);
-        self.seen = world.people().map(|person| (person.name.clone(), person.floor, person.position)).collect();
+        self.seen =
+            world.people().map(|person| (person.name.clone(), person.floor, person.position)).collect();
         let first_interruption = self.interrupted && !std::mem::replace(&mut self.settled, self.interrupted);
         if self.world.is_none() || first_interruption {
             self.world = Some(world.clone());
