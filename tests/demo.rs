@@ -54,9 +54,8 @@ fn an_existing_decision_is_replaced_whole() {
     fs::write(&file, "x".repeat(100_000)).unwrap();
     let printed = demo_in(folder.path(), &["--json", "--out", "."]);
     assert_eq!(fs::read_to_string(&file).unwrap(), printed);
-    let files: Vec<_> =
+    let mut files: Vec<_> =
         fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    let mut files = files;
     files.sort();
     assert_eq!(files, ["decision.json", "run.svg"]);
 }

@@ -30,6 +30,7 @@ fn help_is_as_it_was() {
         ("help_negotiate", &["negotiate", "--help"]),
         ("help_replicate", &["replicate", "--help"]),
         ("help_lint", &["lint", "--help"]),
+        ("help_simulate", &["simulate", "--help"]),
     ] {
         let (text, complaint) = printed(arguments, 0);
         assert_eq!(complaint, "");

@@ -33,7 +33,7 @@ impl Demo {
         let users = [alice, bob];
         let decision = decide(&rules, &users, Options::default(), Policy::Published)?;
         let document = json(&DecisionRecord::new(&decision, &users, &rules))?;
-        let scenario = demo::scenario().map_err(Box::new)?;
+        let scenario = demo::scenario()?;
         let ran = play(&scenario, false)?;
         let (decided, drawn) = (self.out.join("decision.json"), self.out.join("run.svg"));
         write_whole(&decided, &document)?;

@@ -87,7 +87,7 @@ pub enum CommandError {
     Verify(#[from] VerifyError),
     /// A scenario cannot be run.
     #[error(transparent)]
-    Scenario(#[from] Box<ScenarioError>),
+    Scenario(#[from] ScenarioError),
     /// Somebody who watches a run cannot go on.
     #[error("the run cannot be recorded: {0}")]
     Recording(io::Error),

@@ -43,7 +43,7 @@ struct Document<'a> {
 
 impl Simulate {
     pub(super) fn run(&self) -> Result<Report, CommandError> {
-        let scenario = Scenario::open(&self.scenario).map_err(Box::new)?;
+        let scenario = Scenario::open(&self.scenario)?;
         let ran = play(&scenario, self.realtime)?;
         if let Some(file) = &self.picture {
             write_whole(file, &ran.sketch.to_svg())?;

@@ -76,7 +76,7 @@ pub enum ScenarioError {
         /// The key.
         key: String,
         /// What is wrong.
-        source: InputError,
+        source: Box<InputError>,
     },
     /// The building cannot be used.
     #[error("{}: building: {source}", file.display())]
@@ -84,7 +84,7 @@ pub enum ScenarioError {
         /// The scenario.
         file: PathBuf,
         /// What is wrong.
-        source: BuildingError,
+        source: Box<BuildingError>,
     },
     /// The robot or a person cannot be where the scenario has them.
     #[error("{}: {key}: {source}", file.display())]
@@ -94,7 +94,7 @@ pub enum ScenarioError {
         /// The key.
         key: String,
         /// What is wrong.
-        source: WorldError,
+        source: Box<WorldError>,
     },
     /// The mission's specification contradicts itself or the rules.
     #[error("{}: mission: {source}", file.display())]
@@ -102,7 +102,7 @@ pub enum ScenarioError {
         /// The scenario.
         file: PathBuf,
         /// What is wrong.
-        source: SpecificationError,
+        source: Box<SpecificationError>,
     },
 }
 

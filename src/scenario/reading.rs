@@ -75,8 +75,10 @@ impl Reader<'_> {
         let options = self.options(&file.protocol)?;
         let policies = Policy::ALL.map(Policy::name);
         let policy = self.option("protocol.policy", file.protocol.policy.as_deref(), &policies)?;
-        let mission_rules = MissionRules::new(&rules, file.mission.clone(), options, policy)
-            .map_err(|source| ScenarioError::Mission { file: self.file.to_owned(), source })?;
+        let mission_rules =
+            MissionRules::new(&rules, file.mission.clone(), options, policy).map_err(|source| {
+                ScenarioError::Mission { file: self.file.to_owned(), source: Box::new(source) }
+            })?;
         let actions = self.actions(&file.mission, &file.actions, &places)?;
 
         if file.users.is_empty() {
@@ -136,7 +138,8 @@ impl Reader<'_> {
             MALL => Building::mall(),
             path => self.folders.building(Path::new(path)),
         };
-        building.map_err(|source| ScenarioError::Building { file: self.file.to_owned(), source })
+        let file = || self.file.to_owned();
+        building.map_err(|source| ScenarioError::Building { file: file(), source: Box::new(source) })
     }
 
     fn options(&self, file: &ProtocolFile) -> Result<Options, ScenarioError> {
@@ -440,7 +443,7 @@ impl Reader<'_> {
         let later = self.seconds(&format!("{key}.later"), when.later.unwrap_or(0.0), 0.0, "0 to 86400 s")?;
         let within = when.within.unwrap_or(NEAR);
         if !(0.0..=1000.0).contains(&within) {
-            return Err(self.unexpected(&format!("{key}.within"), "0 to 1000 m", within));
+            return Err(self.unexpected(&format!("{key}.within"), "0 to 1000 m", &within));
         }
         if when.within.is_some() && when.near.is_none() {
             return Err(self.unexpected(&format!("{key}.within"), "it beside near alone", "no near"));
@@ -477,10 +480,15 @@ impl Reader<'_> {
     ) -> Result<Duration, ScenarioError> {
         let in_range = (least..=DAY).contains(&seconds);
         let duration = Duration::try_from_secs_f64(seconds).ok().filter(|_| in_range);
-        duration.ok_or_else(|| self.unexpected(key, expected, seconds))
+        duration.ok_or_else(|| self.unexpected(key, expected, &seconds))
     }
 
-    fn unexpected(&self, key: &str, expected: &'static str, found: impl ToString) -> ScenarioError {
+    fn unexpected(
+        &self,
+        key: &str,
+        expected: &'static str,
+        found: &(impl ToString + ?Sized),
+    ) -> ScenarioError {
         ScenarioError::Unexpected {
             file: self.file.to_owned(),
             key: key.to_owned(),
@@ -506,11 +514,11 @@ impl Reader<'_> {
     }
 
     fn input(&self, key: &str, source: crate::input::InputError) -> ScenarioError {
-        ScenarioError::Input { file: self.file.to_owned(), key: key.to_owned(), source }
+        ScenarioError::Input { file: self.file.to_owned(), key: key.to_owned(), source: Box::new(source) }
     }
 
     fn world(&self, key: &str, source: selfneg_sim::WorldError) -> ScenarioError {
-        ScenarioError::World { file: self.file.to_owned(), key: key.to_owned(), source }
+        ScenarioError::World { file: self.file.to_owned(), key: key.to_owned(), source: Box::new(source) }
     }
 }
 
