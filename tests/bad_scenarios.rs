@@ -260,7 +260,7 @@ fn a_scenario_without_users_or_without_anything_to_happen_is_refused() {
     let (before, after) = text.split_at(text.find("[[users]]").unwrap());
     place.write("spoilt.toml", before);
     assert_eq!(place.refused(), "spoilt.toml: users: expected at least one user, found none");
-    let users = &after[..after.find("[[requests]]").unwrap()];
+    let (users, _) = after.split_at(after.find("[[requests]]").unwrap());
     place.write("spoilt.toml", &format!("{before}{users}"));
     assert_eq!(
         place.refused(),
