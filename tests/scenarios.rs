@@ -16,8 +16,9 @@ use std::time::Duration;
 
 use scaffold::program::selfneg;
 use selfneg::mission::{Closing, Command, Dropped, Event, GoalEnd, Output, Record, Served, UserId};
-use selfneg::run::{Ended, HowItEnded, Outcome, Sketch, Storybook, run};
+use selfneg::run::{Ended, HowItEnded, Outcome, Sketch, Storybook, Watcher, run};
 use selfneg::scenario::Scenario;
+use selfneg_sim::World;
 use watching::Log;
 
 const ALICE: UserId = UserId(1);
@@ -201,11 +202,70 @@ fn simulate_prints_the_story_or_one_document() {
     assert!(document["story"].as_array().unwrap().len() > 20);
 }
 
+/// Where a user is, and where and how fast the robot is, whenever the world is shown.
+struct Steps {
+    user: &'static str,
+    seen: Vec<(Duration, Option<f64>, f64)>,
+    reached: Option<usize>,
+    abandoned: Option<usize>,
+}
+
+impl Watcher for Steps {
+    fn output(&mut self, _: Duration, output: &Output) -> std::io::Result<()> {
+        match output {
+            Output::Record(Record::GoalEnded { end: GoalEnd::Reached, .. }) => {
+                self.reached.get_or_insert(self.seen.len());
+            }
+            Output::Record(Record::GoalEnded { end: GoalEnd::Abandoned, .. }) => {
+                self.abandoned.get_or_insert(self.seen.len());
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn world(&mut self, at: Duration, world: &World) -> std::io::Result<()> {
+        let robot = world.robot();
+        let apart = world.person(self.user).map(|user| user.position.distance(robot.pose.position));
+        self.seen.push((at, apart, robot.twist.linear));
+        Ok(())
+    }
+}
+
+impl Steps {
+    fn of(name: &str, user: &'static str) -> Self {
+        let mut steps = Self { user, seen: Vec::new(), reached: None, abandoned: None };
+        run(&scenario(name), &mut [&mut steps]).unwrap();
+        steps
+    }
+}
+
+#[test]
+fn a_guided_user_walks_behind_the_robot_and_leaves_when_served() {
+    let steps = Steps::of("mall", "Alice");
+    let reached = steps.reached.unwrap();
+    // From a while after the robot has set out with her until it is there.
+    for (at, apart, _) in steps.seen[..reached].iter().filter(|(at, ..)| at.as_secs() >= 20) {
+        assert!((0.5..2.0).contains(&apart.unwrap()), "{at:?}: {apart:?}");
+    }
+    assert_eq!(steps.seen[reached + 1].1, None);
+}
+
+#[test]
+fn a_robot_that_is_told_to_stop_stands_soon_after() {
+    let steps = Steps::of("annotated", "Carol");
+    let abandoned = steps.abandoned.unwrap();
+    let begin = steps.seen[abandoned].0;
+    assert!(steps.seen[abandoned - 1].2 > 0.1, "it was driving");
+    let mut after = steps.seen[abandoned..].iter().filter(|(at, ..)| *at > begin + Duration::from_secs(3));
+    assert!(after.all(|(.., speed)| *speed == 0.0));
+}
+
 /// A watcher that fails ends the run.
 #[test]
 fn what_keeps_a_watcher_from_recording_ends_the_run() {
     struct Full;
-    impl selfneg::run::Watcher for Full {
+    impl Watcher for Full {
         fn decided(&mut self, _: Duration) -> std::io::Result<()> {
             Err(std::io::Error::other("the disk is full"))
         }
