@@ -14,10 +14,12 @@ mod watching;
 use std::path::Path;
 use std::time::Duration;
 
+use proptest::prelude::*;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use scaffold::program::selfneg;
 use selfneg::mission::{Closing, Command, Dropped, Event, GoalEnd, Output, Record, Served, UserId};
 use selfneg::run::{Ended, HowItEnded, Outcome, Sketch, Storybook, Watcher, run};
-use selfneg::scenario::Scenario;
+use selfneg::scenario::{OnDisk, Scenario};
 use selfneg_sim::World;
 use watching::Log;
 
@@ -200,6 +202,59 @@ fn simulate_prints_the_story_or_one_document() {
     assert_eq!(document["requests"][0]["how"]["closed"], "reached");
     assert_eq!(document["ended"], "idle");
     assert!(document["story"].as_array().unwrap().len() > 20);
+}
+
+/// The emergency's scenario with other moments and answers: whatever users do, the run ends by
+/// itself, every request is closed, and nothing of anybody is left in memory.
+#[test]
+fn whatever_happens_when_every_request_comes_to_an_end() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/scenarios");
+    let text = std::fs::read_to_string(folder.join("emergency.toml")).unwrap();
+    let (setting, _) = text.split_at(text.find("[[requests]]").unwrap());
+    let answers = prop_oneof![Just("\"never\"".to_owned()), (0.0..3.0).prop_map(|s| format!("{s:.2}"))];
+    let when = (0.0..150.0).prop_map(|at| format!("when = {{ at = {at:.2} }}"));
+    let happening = prop_oneof![
+        3 => (0..3_usize, 0..2_usize).prop_map(|(user, goal)| format!(
+            "[[requests]]\nuser = {:?}\ngoal = {:?}\nmeet = \"information\"\n",
+            ["Alice", "Bob", "Eve"][user], ["bathroom", "pharmacy"][goal]
+        )),
+        2 => (0..3_usize).prop_map(|user| format!("[[withdrawals]]\nuser = {:?}\n", ["Alice", "Bob", "Eve"][user])),
+        1 => (0..3_usize).prop_map(|user| format!(
+            "[[updates]]\nuser = {:?}\nstatus = {{ \"disabled\" = true }}\n", ["Alice", "Bob", "Eve"][user]
+        )),
+        1 => any::<bool>().prop_map(|fire| format!(
+            "[[emergencies]]\ncategory = {:?}\nplace = \"shoes\"\nevidence = \"sensed\"\n",
+            if fire { "a fire" } else { "somebody has fallen" }
+        )),
+    ];
+    let cases = (answers.clone(), answers, prop::collection::vec((happening, when), 1..8), any::<bool>());
+    let config = ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() };
+    let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+    let ended = runner.run(&cases, |(bob, eve, happenings, shut_down)| {
+        let mut text = setting.replace("until = 600", "until = 7200");
+        let at = text.rfind("leaves = true").unwrap();
+        text.insert_str(at, &format!("answers-after = {bob}\n"));
+        text.push_str(&format!(
+            "[[users]]\nname = \"Eve\"\nanswers-after = {eve}\nstands = {{ x = 16.0, y = 6.0 }}\n\
+             context = {{ location = \"mall\" }}\nprofiles.mall = {{ \"elderly people\" = 5 }}\n"
+        ));
+        for (what, when) in &happenings {
+            text.push_str(&format!("{what}{when}\n"));
+        }
+        if shut_down {
+            text.push_str("[shutdown]\nat = 100\n");
+        }
+        let base = OnDisk { base: folder.clone() };
+        let scenario = Scenario::parse(&text, Path::new("random.toml"), &base).unwrap();
+        let mut log = Log::default();
+        let outcome = run(&scenario, &mut [&mut log]).unwrap();
+        prop_assert!(outcome.ended != Ended::TimeUp, "{}\n{:#?}", text, outcome);
+        prop_assert!(outcome.every_request_closed(), "{}\n{:#?}", text, outcome);
+        let left = log.records().any(|record| matches!(record, Record::Wiped { left: 1.., .. }));
+        prop_assert!(!left, "{}", text);
+        Ok(())
+    });
+    ended.unwrap();
 }
 
 /// Where a user is, and where and how fast the robot is, whenever the world is shown.

@@ -84,20 +84,23 @@ impl Watcher for Sketch {
 
     fn event(&mut self, _: Duration, event: &Event) -> io::Result<()> {
         self.expecting = match event {
-            Event::Request { user, .. } => self.person(*user).or(self.robot),
+            Event::Request { user, .. } => {
+                self.interrupted |= self.serving;
+                self.person(*user).or(self.robot)
+            }
             Event::Emergency { place, .. } => {
                 let at = usize::try_from(place.0).ok();
                 at.and_then(|at| self.places.get(at)).copied().flatten()
             }
             _ => return Ok(()),
         };
-        self.interrupted |= self.serving;
         Ok(())
     }
 
     fn output(&mut self, _: Duration, output: &Output) -> io::Result<()> {
         match output {
             Output::Record(Record::GoalStarted { .. }) => self.serving = true,
+            Output::Record(Record::EmergencyDecided { .. }) => self.interrupted |= self.serving,
             Output::Record(Record::Decided { .. } | Record::GoalEnded { .. }) => self.expecting = self.robot,
             _ => {}
         }
