@@ -40,6 +40,7 @@
 //! | [`lint`] | what is legal but surely not meant |
 //! | [`mod@replicate`] | rerun the published package against its own logs |
 //! | [`mod@verify`] | every property under every variant, against the expected verdicts |
+//! | [`scenario`] | who asks for what, when and where: the file format |
 //! | [`run`] | the mission drives the simulated robot |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
@@ -59,6 +60,7 @@ pub mod record;
 pub mod regret;
 pub mod replicate;
 pub mod run;
+pub mod scenario;
 pub mod story;
 pub mod transcript;
 pub mod verify;

@@ -27,6 +27,8 @@ fn it_tells_the_mall() {
     let folder = tempfile::tempdir().unwrap();
     insta::assert_snapshot!("mall", demo_in(folder.path(), &[]));
     assert!(folder.path().join("selfneg-demo/decision.json").is_file());
+    let drawn = fs::read_to_string(folder.path().join("selfneg-demo/run.svg")).unwrap();
+    assert!(drawn.starts_with("<svg") && drawn.contains("Alice keeps precedence"));
 }
 
 #[test]
@@ -52,9 +54,10 @@ fn an_existing_decision_is_replaced_whole() {
     fs::write(&file, "x".repeat(100_000)).unwrap();
     let printed = demo_in(folder.path(), &["--json", "--out", "."]);
     assert_eq!(fs::read_to_string(&file).unwrap(), printed);
-    let files: Vec<_> =
+    let mut files: Vec<_> =
         fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert_eq!(files, ["decision.json"]);
+    files.sort();
+    assert_eq!(files, ["decision.json", "run.svg"]);
 }
 
 #[test]

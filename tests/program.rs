@@ -34,6 +34,7 @@ fn help_is_as_it_was() {
         ("help_regret", &["regret", "--help"]),
         ("help_policies", &["policies", "--help"]),
         ("help_graph", &["graph", "--help"]),
+        ("help_simulate", &["simulate", "--help"]),
     ] {
         let (text, complaint) = printed(arguments, 0);
         assert_eq!(complaint, "");

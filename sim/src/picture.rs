@@ -16,6 +16,8 @@ const SCALE: f64 = 32.0;
 const TITLE: f64 = 46.0;
 /// Pixels below a floor.
 const FOOT: f64 = 18.0;
+/// Pixels from one caption to the next.
+const LINE: f64 = 25.0;
 
 const CLOTHES: [&str; 6] = ["#c8553d", "#588b8b", "#8e6c8a", "#d9a13b", "#5b7db1", "#7a9e4b"];
 
@@ -28,14 +30,23 @@ pub struct Picture<'a> {
     way: Vec<Point>,
     robots: Vec<(Robot, RobotModel)>,
     people: Vec<Person>,
+    marks: Vec<Mark>,
+}
+
+/// A spot with a label, told of below the floor.
+#[derive(Clone, Debug)]
+struct Mark {
+    at: Point,
+    label: String,
+    caption: String,
 }
 
 impl<'a> Picture<'a> {
     /// A floor, by its index, with its places.
     #[must_use]
     pub fn new(building: &'a Building, floor: usize) -> Self {
-        let (trail, way, robots, people) = Default::default();
-        Self { building, floor, trail, way, robots, people }
+        let (trail, way, robots, people, marks) = Default::default();
+        Self { building, floor, trail, way, robots, people, marks }
     }
 
     /// A floor of a world as it is now: its people, and the robot with its way ahead if it is
@@ -65,6 +76,19 @@ impl<'a> Picture<'a> {
         self
     }
 
+    /// With a spot marked by a short label, and a line of text for it below the floor. Marks
+    /// closer than a robot's width share a disc.
+    #[must_use]
+    pub fn mark(mut self, at: Point, label: &str, caption: &str) -> Self {
+        self.marks.push(Mark { at, label: label.to_owned(), caption: caption.to_owned() });
+        self
+    }
+
+    /// Pixels below the floor.
+    fn foot(&self) -> f64 {
+        self.marks.iter().map(|_| LINE).sum::<f64>() + FOOT
+    }
+
     /// The picture as an SVG document.
     #[must_use]
     pub fn to_svg(&self) -> String {
@@ -85,7 +109,7 @@ pub fn svg(pictures: &[Picture<'_>]) -> String {
         )
     };
     let width = floors.iter().map(|(_, f)| size(&f.map).0).fold(0.0, f64::max);
-    let height: f64 = floors.iter().map(|(_, f)| TITLE + size(&f.map).1 + FOOT).sum();
+    let height: f64 = floors.iter().map(|(p, f)| TITLE + size(&f.map).1 + p.foot()).sum();
     let mut out = Drawing { text: String::new() };
     out.line(&format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
@@ -103,7 +127,7 @@ pub fn svg(pictures: &[Picture<'_>]) -> String {
         out.title(picture.building, floor);
         out.floor(picture, floor);
         out.line("</g>");
-        top += TITLE + size(&floor.map).1 + FOOT;
+        top += TITLE + size(&floor.map).1 + picture.foot();
     }
     out.line("</svg>");
     out.text
@@ -189,6 +213,51 @@ impl Drawing {
         for person in &picture.people {
             self.label(map, person.position, -14.0, &person.name, "#3b3a36");
         }
+        self.marks(map, &picture.marks);
+    }
+
+    fn marks(&mut self, map: &OccupancyGrid, marks: &[Mark]) {
+        let mut discs: Vec<(Point, String)> = Vec::new();
+        for mark in marks {
+            match discs.iter_mut().find(|(at, _)| at.distance(mark.at) < 2.0 * RobotModel::TIAGO.radius) {
+                Some((_, labels)) => {
+                    labels.push_str(" \u{b7} ");
+                    labels.push_str(&mark.label);
+                }
+                None => discs.push((mark.at, mark.label.clone())),
+            }
+        }
+        for (at, labels) in discs {
+            let (x, y) = pixel(map, at);
+            let half = half_pill(&labels) + 2.0;
+            let width = f64::from(map.width()) * map.resolution() * SCALE;
+            let x = if width > 2.0 * half { (x + 26.0).clamp(half, width - half) } else { x };
+            self.pill(x, y - 22.0, &labels);
+        }
+        let mut y = f64::from(map.height()) * map.resolution() * SCALE + LINE;
+        for mark in marks {
+            self.pill(30.0, y - 5.0, &mark.label);
+            self.line(&format!(
+                "<text x=\"52\" y=\"{y:.2}\" font-size=\"15\" fill=\"#2b3440\">{}</text>",
+                escaped(&mark.caption)
+            ));
+            y += LINE;
+        }
+    }
+
+    /// A dark label with round ends around its middle.
+    fn pill(&mut self, x: f64, y: f64, text: &str) {
+        let half = half_pill(text);
+        self.line(&format!(
+            "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"20\" rx=\"10\" fill=\"#8c2f39\" stroke=\"#fffdf8\" \
+             stroke-width=\"1.5\"/><text x=\"{x:.2}\" y=\"{:.2}\" font-size=\"13\" font-weight=\"bold\" fill=\"#fff\" \
+             text-anchor=\"middle\">{}</text>",
+            x - half,
+            y - 10.0,
+            2.0 * half,
+            y + 4.6,
+            escaped(text)
+        ));
     }
 
     fn label(&mut self, map: &OccupancyGrid, at: Point, below: f64, text: &str, color: &str) {
@@ -340,6 +409,11 @@ impl Layers {
         }
         path
     }
+}
+
+/// Half the width of a pill around a text.
+fn half_pill(text: &str) -> f64 {
+    6.0 + text.chars().map(|_| 4.2).sum::<f64>()
 }
 
 /// Indices of the occupied cells connected to a cell, if that is occupied and not yet seen.

@@ -1,13 +1,13 @@
 //! `selfneg demo`: the paper's mall.
 
 use std::fmt::Write as _;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use selfneg_core::Options;
 
-use super::{CommandError, Report, Status, json};
+use super::simulate::{play, told};
+use super::{CommandError, Report, Status, json, write_whole};
 use crate::binding::{BoundRules, GoalChoice};
 use crate::demo;
 use crate::precedence::{Policy, decide};
@@ -17,7 +17,7 @@ use crate::story;
 /// The paper's mall: Bob interrupts while the robot serves Alice. Needs no input
 #[derive(Debug, Args)]
 pub(super) struct Demo {
-    /// Folder to write decision.json into; made if need be
+    /// Folder to write decision.json and run.svg into; made if need be
     #[arg(long, value_name = "DIR", default_value = "selfneg-demo")]
     out: PathBuf,
     /// Print the decision as one JSON document instead of the story
@@ -33,34 +33,23 @@ impl Demo {
         let users = [alice, bob];
         let decision = decide(&rules, &users, Options::default(), Policy::Published)?;
         let document = json(&DecisionRecord::new(&decision, &users, &rules))?;
-        let file = self.write("decision.json", &document)?;
+        let scenario = demo::scenario()?;
+        let ran = play(&scenario, false)?;
+        let (decided, drawn) = (self.out.join("decision.json"), self.out.join("run.svg"));
+        write_whole(&decided, &document)?;
+        write_whole(&drawn, &ran.sketch.to_svg())?;
         if self.json {
             return Ok(Report { output: document, warnings: Vec::new(), status: Status::Passed });
         }
-        let mut output = String::from(
-            "In a mall, Alice is with a small child and in urgency; Bob is elderly. Each has an\n\
-             ethical profile: how strongly the robot, when it speaks for them, should give\n\
-             precedence to whom (the paper's Table I).\n\n",
-        );
+        let mut output = told(&scenario, &ran);
+        let _ = writeln!(output, "\nThe decision again, with nothing of the building:\n");
         output.push_str(&story::tell(&decision, &users, &rules));
-        let _ = writeln!(output, "\nThe decision is recorded in {}", file.display());
+        let _ = writeln!(
+            output,
+            "\nThe decision is recorded in {}, the run is drawn in {}",
+            decided.display(),
+            drawn.display()
+        );
         Ok(Report { output, warnings: Vec::new(), status: Status::Passed })
-    }
-
-    /// Writes a whole file or leaves what was there.
-    fn write(&self, name: &str, text: &str) -> Result<PathBuf, CommandError> {
-        let file = self.out.join(name);
-        let unwritable = |file: &Path| {
-            let file = file.to_owned();
-            move |source| CommandError::Unwritable { file, source }
-        };
-        fs::create_dir_all(&self.out).map_err(unwritable(&self.out))?;
-        let part = self.out.join(format!(".{name}.part"));
-        fs::write(&part, text).map_err(unwritable(&part))?;
-        fs::rename(&part, &file).map_err(|source| {
-            let _ = fs::remove_file(&part);
-            unwritable(&file)(source)
-        })?;
-        Ok(file)
     }
 }

@@ -14,10 +14,12 @@ mod present;
 mod rank_range;
 mod regret;
 mod replicate;
+mod simulate;
 mod verify;
 
+use std::fs;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 use selfneg_core::{RulesError, TooManyConditions};
@@ -30,6 +32,7 @@ use crate::policies::PoliciesError;
 use crate::precedence::PrecedenceError;
 use crate::regret::RegretError;
 use crate::replicate::ReplicateError;
+use crate::scenario::ScenarioError;
 use crate::verify::VerifyError;
 
 /// Who gets the robot? Ethical decisions between interrupting users.
@@ -50,6 +53,7 @@ pub struct Program {
 enum Command {
     Demo(demo::Demo),
     Negotiate(negotiate::Negotiate),
+    Simulate(simulate::Simulate),
     Replicate(replicate::Replicate),
     Optimum(optimum::Optimum),
     Regret(regret::Regret),
@@ -114,6 +118,12 @@ pub enum CommandError {
     /// The engine refused a status.
     #[error("status: {0}")]
     Status(#[from] TooManyConditions),
+    /// A scenario cannot be run.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// Somebody who watches a run cannot go on.
+    #[error("the run cannot be recorded: {0}")]
+    Recording(io::Error),
     /// The arguments do not fit together.
     #[error("{0}")]
     Arguments(String),
@@ -139,6 +149,7 @@ impl Program {
         match &self.command {
             Command::Demo(demo) => demo.run(),
             Command::Negotiate(negotiate) => negotiate.run(),
+            Command::Simulate(simulate) => simulate.run(),
             Command::Replicate(replicate) => replicate.run(),
             Command::Optimum(optimum) => optimum.run(),
             Command::Regret(regret) => regret.run(),
@@ -155,4 +166,23 @@ fn json<T: Serialize>(document: &T) -> Result<String, CommandError> {
     let mut text = serde_json::to_string_pretty(document)?;
     text.push('\n');
     Ok(text)
+}
+
+/// Writes a whole file or leaves what was there. Folders are made if need be.
+fn write_whole(file: &Path, text: &str) -> Result<(), CommandError> {
+    let unwritable = |file: &Path| {
+        let file = file.to_owned();
+        move |source| CommandError::Unwritable { file, source }
+    };
+    let folder = file.parent().unwrap_or(Path::new(""));
+    if !folder.as_os_str().is_empty() {
+        fs::create_dir_all(folder).map_err(unwritable(folder))?;
+    }
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let part = folder.join(format!(".{name}.part"));
+    fs::write(&part, text).map_err(unwritable(&part))?;
+    fs::rename(&part, file).map_err(|source| {
+        let _ = fs::remove_file(&part);
+        unwritable(file)(source)
+    })
 }

@@ -43,47 +43,69 @@ pub struct Participant {
 }
 
 /// Watches a run. All times are since its begin. An event is shown before the mission
-/// handles it, and then each of the mission's replies in order.
+/// handles it, and then each of the mission's replies in order; a sentence comes right after
+/// what it tells of. What a watcher does not need it leaves out.
 pub trait Watcher {
     /// The run is about to begin.
     ///
     /// # Errors
     /// Whatever keeps the watcher from recording; the run ends then.
-    fn begin(&mut self, setup: &Setup<'_>) -> io::Result<()>;
+    fn begin(&mut self, setup: &Setup<'_>) -> io::Result<()> {
+        let _ = setup;
+        Ok(())
+    }
 
     /// An event, about to be handled by the mission.
     ///
     /// # Errors
     /// As for [`begin`](Self::begin).
-    fn event(&mut self, at: Duration, event: &Event) -> io::Result<()>;
+    fn event(&mut self, at: Duration, event: &Event) -> io::Result<()> {
+        let _ = (at, event);
+        Ok(())
+    }
 
     /// A reply of the mission.
     ///
     /// # Errors
     /// As for [`begin`](Self::begin).
-    fn output(&mut self, at: Duration, output: &Output) -> io::Result<()>;
+    fn output(&mut self, at: Duration, output: &Output) -> io::Result<()> {
+        let _ = (at, output);
+        Ok(())
+    }
 
     /// Where everybody is, a few times a second and whenever something happens.
     ///
     /// # Errors
     /// As for [`begin`](Self::begin).
-    fn world(&mut self, at: Duration, world: &World) -> io::Result<()>;
+    fn world(&mut self, at: Duration, world: &World) -> io::Result<()> {
+        let _ = (at, world);
+        Ok(())
+    }
 
     /// One plain sentence of the story. It may name users: personal.
     ///
     /// # Errors
     /// As for [`begin`](Self::begin).
-    fn sentence(&mut self, at: Duration, sentence: &str) -> io::Result<()>;
+    fn sentence(&mut self, at: Duration, sentence: &str) -> io::Result<()> {
+        let _ = (at, sentence);
+        Ok(())
+    }
 
     /// A decision is complete and has been told: the moment to make it durable.
     ///
     /// # Errors
     /// As for [`begin`](Self::begin).
-    fn decided(&mut self, at: Duration) -> io::Result<()>;
+    fn decided(&mut self, at: Duration) -> io::Result<()> {
+        let _ = at;
+        Ok(())
+    }
 
     /// The run is over.
     ///
     /// # Errors
     /// As for [`begin`](Self::begin).
-    fn end(&mut self, at: Duration) -> io::Result<()>;
+    fn end(&mut self, at: Duration) -> io::Result<()> {
+        let _ = at;
+        Ok(())
+    }
 }

@@ -1,0 +1,173 @@
+//! `selfneg simulate`: a scenario, from its begin to its end.
+
+use std::fmt::Write as _;
+use std::io;
+use std::path::PathBuf;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use selfneg_sim::World;
+use serde::Serialize;
+
+use super::{CommandError, Report, Status, json, write_whole};
+use crate::mission::{Closing, Refusal, Staff};
+use crate::run::{Ended, HowItEnded, Outcome, Sketch, Storybook, Told, Watcher, clock, run};
+use crate::scenario::Scenario;
+
+/// Run a scenario in the simulated building, and tell its story
+#[derive(Debug, Args)]
+pub(super) struct Simulate {
+    /// The scenario file (TOML; docs/scenario.md)
+    #[arg(value_name = "SCENARIO")]
+    scenario: PathBuf,
+    /// Take as long as it would really take
+    #[arg(long)]
+    realtime: bool,
+    /// Draw the run into this file (SVG)
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
+    /// Print one JSON document instead of the story
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    scenario: &'a str,
+    #[serde(flatten)]
+    outcome: &'a Outcome,
+    story: &'a [Told],
+}
+
+impl Simulate {
+    pub(super) fn run(&self) -> Result<Report, CommandError> {
+        let scenario = Scenario::open(&self.scenario)?;
+        let ran = play(&scenario, self.realtime)?;
+        if let Some(file) = &self.picture {
+            write_whole(file, &ran.sketch.to_svg())?;
+        }
+        let outcome = &ran.outcome;
+        let status = if outcome.is_all_right() { Status::Passed } else { Status::Failed };
+        let output = match self.json {
+            true => {
+                let story = &ran.story.told;
+                json(&Document { scenario: &scenario.name, outcome, story })?
+            }
+            false => told(&scenario, &ran),
+        };
+        Ok(Report { output, warnings: Vec::new(), status })
+    }
+}
+
+/// A run that was told and drawn.
+pub(super) struct Ran {
+    pub(super) outcome: Outcome,
+    pub(super) story: Storybook,
+    pub(super) sketch: Sketch,
+}
+
+/// Runs a scenario with a progress bar. Whoever else is to watch is added here.
+pub(super) fn play(scenario: &Scenario, realtime: bool) -> Result<Ran, CommandError> {
+    let (mut story, mut sketch) = (Storybook::default(), Sketch::default());
+    let mut bar = Bar::new(scenario.until, realtime);
+    let mut watchers: Vec<&mut dyn Watcher> = vec![&mut story, &mut sketch, &mut bar];
+    let outcome = run(scenario, &mut watchers).map_err(CommandError::Recording)?;
+    Ok(Ran { outcome, story, sketch })
+}
+
+/// The story and what came of it.
+pub(super) fn told(scenario: &Scenario, ran: &Ran) -> String {
+    let mut text = scenario.name.clone();
+    if !scenario.about.is_empty() {
+        let _ = write!(text, "\n\n{}", scenario.about.trim());
+    }
+    let _ = write!(text, "\n\n{}\n{}", ran.story.to_text(), summary(&ran.outcome));
+    text
+}
+
+fn summary(outcome: &Outcome) -> String {
+    let why = match outcome.ended {
+        Ended::Idle => "everything is done",
+        Ended::ShutDown => "the robot was shut down",
+        Ended::TimeUp => "the scenario's time is up",
+    };
+    let mut text = format!(
+        "After {} {why}; the robot drove {:.0} m and made {} {}.\n",
+        clock(outcome.after),
+        outcome.metres,
+        outcome.decisions,
+        if outcome.decisions == 1 { "decision" } else { "decisions" }
+    );
+    for request in &outcome.requests {
+        let how = match request.how {
+            None => "still open",
+            Some(HowItEnded::Closed(Closing::Reached)) => "served",
+            Some(HowItEnded::Closed(Closing::Failed)) => "failed",
+            Some(HowItEnded::Closed(Closing::Withdrawn)) => "withdrawn",
+            Some(HowItEnded::Closed(Closing::Staff(Staff::DeferredTooOften))) => {
+                "to staff, put off too often"
+            }
+            Some(HowItEnded::Closed(Closing::Staff(Staff::NoRoom))) => "to staff, no memory left",
+            Some(HowItEnded::Closed(Closing::Staff(Staff::Shutdown))) => "to staff, shut down",
+            Some(HowItEnded::Closed(Closing::Staff(Staff::EmergencyBeyondRobot))) => {
+                "to staff, beyond the robot"
+            }
+            Some(HowItEnded::Refused(Refusal::UnknownGoal)) => "refused, unknown goal",
+            Some(HowItEnded::Refused(Refusal::Incapable)) => "refused, beyond the robot",
+            Some(HowItEnded::Refused(Refusal::AlreadyAsking)) => "refused, an earlier request was open",
+        };
+        let _ =
+            write!(text, "  {} ({}): asked at {}, {how}", request.user, request.goal, clock(request.asked));
+        let _ = match request.closed {
+            Some(closed) => writeln!(text, " at {}", clock(closed)),
+            None => writeln!(text),
+        };
+    }
+    for failure in &outcome.failures {
+        let _ = writeln!(text, "  failure at {}: {}", clock(failure.at), failure.what);
+    }
+    for key in &outcome.never_happened {
+        let _ = writeln!(text, "  never happened: {key}");
+    }
+    text
+}
+
+/// Shows how much of the scenario's time has gone, and holds it back until as much real time
+/// has gone if that is wanted.
+struct Bar {
+    bar: ProgressBar,
+    real: Option<Instant>,
+}
+
+impl Bar {
+    fn new(until: Duration, realtime: bool) -> Self {
+        let bar = ProgressBar::new(until.as_secs());
+        let style = ProgressStyle::with_template("{bar:20} {pos} of at most {len} s  {wide_msg}");
+        if let Ok(style) = style {
+            bar.set_style(style);
+        }
+        Self { bar, real: realtime.then(Instant::now) }
+    }
+}
+
+impl Watcher for Bar {
+    fn world(&mut self, at: Duration, _: &World) -> io::Result<()> {
+        self.bar.set_position(at.as_secs());
+        if let Some(ahead) = self.real.and_then(|began| at.checked_sub(began.elapsed())) {
+            thread::sleep(ahead);
+        }
+        Ok(())
+    }
+
+    fn sentence(&mut self, _: Duration, sentence: &str) -> io::Result<()> {
+        self.bar.set_message(sentence.to_owned());
+        Ok(())
+    }
+
+    fn end(&mut self, _: Duration) -> io::Result<()> {
+        self.bar.finish_and_clear();
+        Ok(())
+    }
+}
