@@ -22,10 +22,8 @@ const FILES: &[&str] = &[
 
 fn main() -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed=proto");
-    let descriptors = protox::Compiler::new(["proto"])?
-        .include_imports(true)
-        .open_files(FILES)?
-        .file_descriptor_set();
+    let descriptors =
+        protox::Compiler::new(["proto"])?.include_imports(true).open_files(FILES)?.file_descriptor_set();
     let out = PathBuf::from(env::var_os("OUT_DIR").ok_or("OUT_DIR is not set")?);
     fs::write(out.join("descriptors.bin"), descriptors.encode_to_vec())?;
     prost_build::Config::new().compile_fds(descriptors)?;

@@ -38,6 +38,7 @@
 //! | [`mod@replicate`] | rerun the published package against its own logs |
 //! | [`mod@verify`] | every property under every variant, against the expected verdicts |
 //! | [`run`] | the mission drives the simulated robot |
+//! | [`trace`] | a run as evidence: written, read back, replayed |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
@@ -54,5 +55,6 @@ pub mod record;
 pub mod replicate;
 pub mod run;
 pub mod story;
+pub mod trace;
 pub mod transcript;
 pub mod verify;
