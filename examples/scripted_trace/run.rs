@@ -18,21 +18,15 @@ const BOB: UserId = UserId(2);
 
 /// Alice and Bob, as users of the run.
 pub fn participants() -> Result<Vec<Participant>, Box<dyn Error>> {
-    let one = |pseudonym, user: selfneg::input::User| Participant {
-        pseudonym,
-        person: user.name.clone(),
-        user,
-    };
+    let one =
+        |pseudonym, user: selfneg::input::User| Participant { pseudonym, person: user.name.clone(), user };
     Ok(vec![one(ALICE, demo::alice()?), one(BOB, demo::bob()?)])
 }
 
 /// Goals of two tasks, one kind of emergency, one inference.
 pub fn specification() -> Specification {
-    let task = |name: &str| Task {
-        name: name.to_owned(),
-        actions: vec!["drive".to_owned()],
-        interruptible: true,
-    };
+    let task =
+        |name: &str| Task { name: name.to_owned(), actions: vec!["drive".to_owned()], interruptible: true };
     let goal = |name: &str| Goal {
         name: name.to_owned(),
         needs: vec!["drive".to_owned()],
@@ -76,9 +70,8 @@ pub fn play(watcher: &mut dyn Watcher) -> Result<Vec<Output>, Box<dyn Error>> {
     let mut world = World::new(building, Settings::default(), "charging station")?;
     world.add_person(Person::standing("Alice", 0, Point::new(12.0, 6.0)))?;
     world.add_person(Person::standing("Bob", 0, Point::new(14.0, 6.5)))?;
-    world.add_person(
-        Person::standing("Carla", 0, Point::new(16.0, 6.0)).walking(&[Point::new(19.0, 6.4)]),
-    )?;
+    world
+        .add_person(Person::standing("Carla", 0, Point::new(16.0, 6.0)).walking(&[Point::new(19.0, 6.4)]))?;
     watcher.world(world.time(), &world)?;
 
     let rules = MissionRules::new(&rules, specification, options, policy)?;
@@ -96,7 +89,11 @@ pub fn play(watcher: &mut dyn Watcher) -> Result<Vec<Output>, Box<dyn Error>> {
     play.replies(first)?;
     play.handle(Event::Request { user: ALICE, goal: GoalId(0), place: Place(0) })?;
     play.drive(200)?;
-    play.handle(Event::Status { user: ALICE, condition: "elderly".into(), truth: selfneg::input::Truth::Withheld })?;
+    play.handle(Event::Status {
+        user: ALICE,
+        condition: "elderly".into(),
+        truth: selfneg::input::Truth::Withheld,
+    })?;
     play.handle(Event::Request { user: BOB, goal: GoalId(1), place: Place(1) })?;
     play.handle(Event::Context { user: BOB, attribute: "crowd".into(), value: "dense".into() })?;
     let claim = |evidence| Event::Emergency { category: CategoryId(0), place: Place(3), evidence };
