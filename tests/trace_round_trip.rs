@@ -1,6 +1,8 @@
 //! What was written can be read back, replays to the same replies, and has the same bytes
 //! twice.
 
+#![expect(clippy::unwrap_used, reason = "it is a test")]
+
 #[path = "../examples/scripted_trace/run.rs"]
 #[allow(unreachable_pub, reason = "shared with the example")]
 mod run;

@@ -6,19 +6,19 @@ use prost::Message as _;
 use prost_types::FileDescriptorSet;
 
 /// Package `selfneg.v1`: what happened, as far as it is nobody's personal data.
-#[allow(missing_docs, clippy::all, clippy::doc_markdown, reason = "generated")]
+#[allow(missing_docs, clippy::all, clippy::pedantic, reason = "generated")]
 pub mod evidence {
     include!(concat!(env!("OUT_DIR"), "/selfneg.v1.rs"));
 }
 
 /// Package `selfneg.personal.v1`: what is personal of it.
-#[allow(missing_docs, clippy::all, clippy::doc_markdown, reason = "generated")]
+#[allow(missing_docs, clippy::all, clippy::pedantic, reason = "generated")]
 pub mod personal {
     include!(concat!(env!("OUT_DIR"), "/selfneg.personal.v1.rs"));
 }
 
 /// Package `foxglove`: the part that we fill of what viewers know by name.
-#[allow(missing_docs, clippy::all, clippy::doc_markdown, reason = "generated")]
+#[allow(missing_docs, clippy::all, clippy::pedantic, reason = "generated")]
 pub mod foxglove {
     include!(concat!(env!("OUT_DIR"), "/foxglove.rs"));
 }
