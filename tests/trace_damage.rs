@@ -155,12 +155,16 @@ fn every_byte_of_a_small_trace_counts() {
 fn a_small_trace_cut_at_every_length_replays_what_is_left() {
     let bytes = small();
     let entries = Recording::read(&bytes).unwrap().entries;
+    let mut replayed = None;
     for cut in 0..bytes.len() {
         match Recording::read(&bytes[..cut]) {
             Ok(recording) => {
                 assert!(matches!(recording.damage, Some(TraceError::Truncated { .. })), "cut at {cut}");
                 assert!(entries.starts_with(&recording.entries), "cut at {cut}");
-                assert_eq!(recording.replay().unwrap().difference, None, "cut at {cut}");
+                if replayed != Some(recording.entries.len()) {
+                    replayed = Some(recording.entries.len());
+                    assert_eq!(recording.replay().unwrap().difference, None, "cut at {cut}");
+                }
             }
             Err(error) => {
                 assert!(
@@ -178,7 +182,8 @@ fn a_chunk_that_is_no_chunk_any_more_leaves_a_gap() {
     let mut bytes = small();
     let chunks: Vec<usize> =
         record_ends(&bytes).into_iter().filter(|at| bytes.get(*at) == Some(&6)).collect();
-    bytes[chunks[1]] = 0x90;
+    // The last but one declares no schema that the last one needs.
+    bytes[chunks[chunks.len() - 2]] = 0x90;
     let damage = Recording::read(&bytes).unwrap().damage;
     assert!(matches!(damage, Some(TraceError::Gap { .. })), "{damage:?}");
 }

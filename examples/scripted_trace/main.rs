@@ -1,5 +1,6 @@
 //! Writes the trace of a scripted run: `cargo run --example scripted_trace -- out.mcap`.
 
+#[allow(unreachable_pub, reason = "shared with tests")]
 mod run;
 
 use std::error::Error;
