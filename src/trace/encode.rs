@@ -530,3 +530,95 @@ fn dropped(why: Dropped) -> open::Dropped {
         Dropped::Shutdown => open::Dropped::Shutdown,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A value's name here, as its type in the format writes it.
+    fn named(kind: &str, value: impl serde::Serialize) -> String {
+        let value = serde_json::to_value(value).unwrap();
+        let name = match &value {
+            serde_json::Value::Object(map) => {
+                let (outer, inner) = map.iter().next().unwrap();
+                format!("{outer}-{}", inner.as_str().unwrap())
+            }
+            value => value.as_str().unwrap().to_owned(),
+        };
+        format!("{kind}-{name}").replace('-', "_").to_uppercase()
+    }
+
+    macro_rules! same_names {
+        ($kind:literal, $encode:path, $($value:expr),+) => {
+            $( assert_eq!($encode($value).as_str_name(), named($kind, $value)); )+
+        };
+    }
+
+    #[test]
+    fn every_value_keeps_its_name() {
+        same_names!("evidence", evidence_of, Evidence::Claimed, Evidence::Sensed, Evidence::Verified);
+        same_names!(
+            "waiting",
+            waiting,
+            Waiting::NotInterruptible,
+            Waiting::Queued,
+            Waiting::NoPrecedence,
+            Waiting::DataMissing,
+            Waiting::DataUnusable,
+            Waiting::Emergency
+        );
+        same_names!("refusal", refusal, Refusal::UnknownGoal, Refusal::Incapable, Refusal::AlreadyAsking);
+        same_names!("closing", closing, Closing::Reached, Closing::Failed, Closing::Withdrawn);
+        for why in [Staff::DeferredTooOften, Staff::NoRoom, Staff::Shutdown, Staff::EmergencyBeyondRobot] {
+            same_names!("staff", staff, why);
+            same_names!("closing", closing, Closing::Staff(why));
+        }
+        same_names!(
+            "component",
+            component_of,
+            Component::MissionController,
+            Component::InterruptionManager,
+            Component::NegotiationManager,
+            Component::ContextEthicsManager,
+            Component::OfferGenerator,
+            Component::EthicalImpactAnalyzer
+        );
+        same_names!(
+            "lifecycle",
+            lifecycle,
+            Lifecycle::Unconfigured,
+            Lifecycle::Inactive,
+            Lifecycle::Active,
+            Lifecycle::Finalized
+        );
+        same_names!(
+            "transition",
+            transition,
+            Transition::Configure,
+            Transition::Activate,
+            Transition::Deactivate,
+            Transition::Cleanup,
+            Transition::Shutdown
+        );
+        same_names!(
+            "unusable",
+            unusable,
+            Unusable::NoLocation,
+            Unusable::UnknownContext,
+            Unusable::TooMuch,
+            Unusable::NameTooLong
+        );
+        same_names!(
+            "goal-end",
+            goal_end,
+            GoalEnd::Reached,
+            GoalEnd::Failed,
+            GoalEnd::Preempted,
+            GoalEnd::Abandoned
+        );
+        same_names!("dropped", dropped, Dropped::Emergency, Dropped::NobodyLeft, Dropped::Shutdown);
+        for verdict in ["accept", "reject", "hold"] {
+            same_names!("verdict", verdict_of, verdict);
+        }
+    }
+}
