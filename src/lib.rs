@@ -42,6 +42,7 @@
 //! | [`mod@verify`] | every property under every variant, against the expected verdicts |
 //! | [`scenario`] | who asks for what, when and where: the file format |
 //! | [`run`] | the mission drives the simulated robot |
+//! | [`trace`] | a run as evidence: written, read back, replayed |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
@@ -62,5 +63,6 @@ pub mod replicate;
 pub mod run;
 pub mod scenario;
 pub mod story;
+pub mod trace;
 pub mod transcript;
 pub mod verify;

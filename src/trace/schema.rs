@@ -1,0 +1,167 @@
+//! The `.proto` files as Rust types and as descriptors.
+
+use std::collections::BTreeSet;
+
+use prost::Message as _;
+use prost_types::FileDescriptorSet;
+
+/// Package `selfneg.v1`: what happened, as far as it is nobody's personal data.
+#[allow(missing_docs, clippy::all, clippy::pedantic, reason = "generated")]
+pub mod evidence {
+    include!(concat!(env!("OUT_DIR"), "/selfneg.v1.rs"));
+}
+
+/// Package `selfneg.personal.v1`: what is personal of it.
+#[allow(missing_docs, clippy::all, clippy::pedantic, reason = "generated")]
+pub mod personal {
+    include!(concat!(env!("OUT_DIR"), "/selfneg.personal.v1.rs"));
+}
+
+/// Package `foxglove`: the part that we fill of what viewers know by name.
+#[allow(missing_docs, clippy::all, clippy::pedantic, reason = "generated")]
+pub mod foxglove {
+    include!(concat!(env!("OUT_DIR"), "/foxglove.rs"));
+}
+
+const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/descriptors.bin"));
+
+/// Every message type that a topic has, by its full name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Schema {
+    /// `selfneg.v1.Header`
+    Header,
+    /// `selfneg.v1.End`
+    End,
+    /// `selfneg.v1.Event`
+    Event,
+    /// `selfneg.v1.Record`
+    Record,
+    /// `selfneg.v1.Command`
+    Command,
+    /// `selfneg.personal.v1.Rules`
+    Rules,
+    /// `selfneg.personal.v1.Participant`
+    Participant,
+    /// `selfneg.personal.v1.Input`
+    Input,
+    /// `selfneg.personal.v1.Reply`
+    Reply,
+    /// `foxglove.FrameTransforms`
+    FrameTransforms,
+    /// `foxglove.Grid`
+    Grid,
+    /// `foxglove.Log`
+    Log,
+    /// `foxglove.PointCloud`
+    PointCloud,
+    /// `foxglove.PoseInFrame`
+    PoseInFrame,
+    /// `foxglove.SceneUpdate`
+    SceneUpdate,
+}
+
+impl Schema {
+    /// All of them.
+    pub const ALL: [Self; 15] = [
+        Self::Header,
+        Self::End,
+        Self::Event,
+        Self::Record,
+        Self::Command,
+        Self::Rules,
+        Self::Participant,
+        Self::Input,
+        Self::Reply,
+        Self::FrameTransforms,
+        Self::Grid,
+        Self::Log,
+        Self::PointCloud,
+        Self::PoseInFrame,
+        Self::SceneUpdate,
+    ];
+
+    /// The message's full name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Header => "selfneg.v1.Header",
+            Self::End => "selfneg.v1.End",
+            Self::Event => "selfneg.v1.Event",
+            Self::Record => "selfneg.v1.Record",
+            Self::Command => "selfneg.v1.Command",
+            Self::Rules => "selfneg.personal.v1.Rules",
+            Self::Participant => "selfneg.personal.v1.Participant",
+            Self::Input => "selfneg.personal.v1.Input",
+            Self::Reply => "selfneg.personal.v1.Reply",
+            Self::FrameTransforms => "foxglove.FrameTransforms",
+            Self::Grid => "foxglove.Grid",
+            Self::Log => "foxglove.Log",
+            Self::PointCloud => "foxglove.PointCloud",
+            Self::PoseInFrame => "foxglove.PoseInFrame",
+            Self::SceneUpdate => "foxglove.SceneUpdate",
+        }
+    }
+
+    const fn file(self) -> &'static str {
+        match self {
+            Self::Header | Self::End => "selfneg/v1/header.proto",
+            Self::Event => "selfneg/v1/event.proto",
+            Self::Record => "selfneg/v1/record.proto",
+            Self::Command => "selfneg/v1/command.proto",
+            Self::Rules | Self::Participant | Self::Input | Self::Reply => {
+                "selfneg/personal/v1/personal.proto"
+            }
+            Self::FrameTransforms => "foxglove/FrameTransforms.proto",
+            Self::Grid => "foxglove/Grid.proto",
+            Self::Log => "foxglove/Log.proto",
+            Self::PointCloud => "foxglove/PointCloud.proto",
+            Self::PoseInFrame => "foxglove/PoseInFrame.proto",
+            Self::SceneUpdate => "foxglove/SceneUpdate.proto",
+        }
+    }
+
+    /// The `FileDescriptorSet` of its file and of all that this imports, as MCAP wants it.
+    /// Comments are left out.
+    #[must_use]
+    pub fn descriptors(self) -> Vec<u8> {
+        // Made by the same build: it decodes, and the tests decode every answer again.
+        let all = FileDescriptorSet::decode(DESCRIPTORS).unwrap_or_default();
+        let mut wanted = BTreeSet::from([self.file().to_owned()]);
+        // Files come after what they import, so that one pass from the end finds all.
+        for file in all.file.iter().rev() {
+            if wanted.contains(file.name()) {
+                wanted.extend(file.dependency.iter().cloned());
+            }
+        }
+        let file = all.file.into_iter().filter(|file| wanted.contains(file.name()));
+        let file = file.map(|file| prost_types::FileDescriptorProto { source_code_info: None, ..file });
+        FileDescriptorSet { file: file.collect() }.encode_to_vec()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use prost::Message as _;
+    use prost_types::FileDescriptorSet;
+
+    use super::Schema;
+
+    #[test]
+    fn every_schema_is_in_its_descriptors_with_all_that_it_imports() {
+        for schema in Schema::ALL {
+            let set = FileDescriptorSet::decode(schema.descriptors().as_slice()).unwrap();
+            let (package, name) = schema.name().rsplit_once('.').unwrap();
+            let holds = set.file.iter().any(|file| {
+                file.package() == package && file.message_type.iter().any(|message| message.name() == name)
+            });
+            assert!(holds, "{}", schema.name());
+            let mut before = BTreeSet::new();
+            for file in &set.file {
+                assert!(file.dependency.iter().all(|import| before.contains(import)), "{}", schema.name());
+                before.insert(file.name().to_owned());
+            }
+        }
+    }
+}
