@@ -228,7 +228,12 @@ fn whatever_happens_when_every_request_comes_to_an_end() {
         )),
     ];
     let cases = (answers.clone(), answers, prop::collection::vec((happening, when), 1..8), any::<bool>());
-    let config = ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() };
+    let config = ProptestConfig {
+        cases: 24,
+        failure_persistence: None,
+        max_shrink_iters: 16,
+        ..ProptestConfig::default()
+    };
     let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
     let ended = runner.run(&cases, |(bob, eve, happenings, shut_down)| {
         let mut text = setting.replace("until = 600", "until = 7200");

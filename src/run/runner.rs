@@ -77,6 +77,8 @@ struct Runner<'s, 'w, 'a> {
     executing: Option<Executing>,
     following: Option<Following>,
     served: Served,
+    /// Whether the mission was idle after the last event. To find out it reads all its memory.
+    idle: bool,
     next_show: Duration,
     outcome: Outcome,
 }
@@ -99,6 +101,7 @@ impl<'s, 'w, 'a> Runner<'s, 'w, 'a> {
             executing: None,
             following: None,
             served: Served::Nobody,
+            idle: true,
             next_show: Duration::ZERO,
             outcome: Outcome {
                 ended: Ended::Idle,
@@ -200,6 +203,7 @@ impl<'s, 'w, 'a> Runner<'s, 'w, 'a> {
         self.tell(sentence)?;
         self.note(&event);
         let outputs = self.mission.handle(event);
+        self.idle = self.mission.is_idle();
         self.outputs(&outputs)?;
         let decided = outputs.iter().any(|output| {
             matches!(output, Output::Record(Record::Decided { .. } | Record::EmergencyDecided { .. }))
@@ -386,9 +390,8 @@ impl<'s, 'w, 'a> Runner<'s, 'w, 'a> {
         if self.mission.is_over() {
             return Some(Ended::ShutDown);
         }
-        // Whether the mission is idle is asked last, since it then reads all its memory.
         let busy = self.executing.is_some() || self.told != sim::Command::Continue;
-        if self.outstanding.is_empty() && !busy && self.mission.is_idle() {
+        if self.outstanding.is_empty() && !busy && self.idle {
             return Some(Ended::Idle);
         }
         (self.now() >= self.scenario.until).then_some(Ended::TimeUp)
