@@ -17,7 +17,7 @@ use crate::story;
 /// The paper's mall: Bob interrupts while the robot serves Alice. Needs no input
 #[derive(Debug, Args)]
 pub(super) struct Demo {
-    /// Folder to write decision.json and run.svg into; made if need be
+    /// Folder to write decision.json, trace.mcap and run.svg into; made if need be
     #[arg(long, value_name = "DIR", default_value = "selfneg-demo")]
     out: PathBuf,
     /// Print the decision as one JSON document instead of the story
@@ -34,8 +34,9 @@ impl Demo {
         let decision = decide(&rules, &users, Options::default(), Policy::Published)?;
         let document = json(&DecisionRecord::new(&decision, &users, &rules))?;
         let scenario = demo::scenario()?;
-        let ran = play(&scenario, false)?;
-        let (decided, drawn) = (self.out.join("decision.json"), self.out.join("run.svg"));
+        let [decided, recorded, drawn] =
+            ["decision.json", "trace.mcap", "run.svg"].map(|name| self.out.join(name));
+        let ran = play(&scenario, false, Some(&recorded))?;
         write_whole(&decided, &document)?;
         write_whole(&drawn, &ran.sketch.to_svg())?;
         if self.json {
@@ -46,8 +47,9 @@ impl Demo {
         output.push_str(&story::tell(&decision, &users, &rules));
         let _ = writeln!(
             output,
-            "\nThe decision is recorded in {}, the run is drawn in {}",
+            "\nThe decision is in {}, the run is recorded in {} and drawn in {}",
             decided.display(),
+            recorded.display(),
             drawn.display()
         );
         Ok(Report { output, warnings: Vec::new(), status: Status::Passed })

@@ -4,6 +4,7 @@
 //! everything was right. Printing and exit codes are left to the program.
 
 mod demo;
+mod durable;
 mod graph;
 mod lint;
 mod negotiate;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -11,10 +11,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use selfneg_sim::World;
 use serde::Serialize;
 
+use super::durable::Durable;
 use super::{CommandError, Report, Status, json, write_whole};
 use crate::mission::{Closing, Refusal, Staff};
 use crate::run::{Ended, HowItEnded, Outcome, Sketch, Storybook, Told, Watcher, clock, run};
 use crate::scenario::Scenario;
+use crate::trace::TraceWriter;
 
 /// Run a scenario in the simulated building, and tell its story
 #[derive(Debug, Args)]
@@ -22,6 +24,10 @@ pub(super) struct Simulate {
     /// The scenario file (TOML; docs/scenario.md)
     #[arg(value_name = "SCENARIO")]
     scenario: PathBuf,
+    /// Record the run into this file (MCAP; docs/trace.md). Made anew if it is there; what
+    /// was decided is in it even if the run is killed
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
     /// Take as long as it would really take
     #[arg(long)]
     realtime: bool,
@@ -44,7 +50,7 @@ struct Document<'a> {
 impl Simulate {
     pub(super) fn run(&self) -> Result<Report, CommandError> {
         let scenario = Scenario::open(&self.scenario)?;
-        let ran = play(&scenario, self.realtime)?;
+        let ran = play(&scenario, self.realtime, self.trace.as_deref())?;
         if let Some(file) = &self.picture {
             write_whole(file, &ran.sketch.to_svg())?;
         }
@@ -68,12 +74,26 @@ pub(super) struct Ran {
     pub(super) sketch: Sketch,
 }
 
-/// Runs a scenario with a progress bar. Whoever else is to watch is added here.
-pub(super) fn play(scenario: &Scenario, realtime: bool) -> Result<Ran, CommandError> {
+/// Runs a scenario with a progress bar, and records it into `trace`.
+pub(super) fn play(scenario: &Scenario, realtime: bool, trace: Option<&Path>) -> Result<Ran, CommandError> {
     let (mut story, mut sketch) = (Storybook::default(), Sketch::default());
     let mut bar = Bar::new(scenario.until, realtime);
+    let unwritable = |file: &Path| {
+        let file = file.to_owned();
+        move |source| CommandError::Unwritable { file, source }
+    };
+    let mut writer = match trace {
+        Some(file) => Some(TraceWriter::new(Durable::create(file)?).map_err(unwritable(file))?),
+        None => None,
+    };
     let mut watchers: Vec<&mut dyn Watcher> = vec![&mut story, &mut sketch, &mut bar];
-    let outcome = run(scenario, &mut watchers).map_err(CommandError::Recording)?;
+    if let Some(writer) = &mut writer {
+        watchers.push(writer);
+    }
+    let outcome = run(scenario, &mut watchers).map_err(|source| match trace {
+        Some(file) => unwritable(file)(source),
+        None => CommandError::Recording(source),
+    })?;
     Ok(Ran { outcome, story, sketch })
 }
 
