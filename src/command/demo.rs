@@ -36,8 +36,8 @@ impl Demo {
         let scenario = demo::scenario()?;
         let [decided, recorded, drawn] =
             ["decision.json", "trace.mcap", "run.svg"].map(|name| self.out.join(name));
-        let ran = play(&scenario, false, Some(&recorded))?;
         write_whole(&decided, &document)?;
+        let ran = play(&scenario, false, Some(&recorded))?;
         write_whole(&drawn, &ran.sketch.to_svg())?;
         if self.json {
             return Ok(Report { output: document, warnings: Vec::new(), status: Status::Passed });
