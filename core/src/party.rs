@@ -77,9 +77,16 @@ pub struct Party<'a, R: Role> {
     willing: bool,
     threshold: Impact,
     offers_made: usize,
-    heard: Disclosed<'a>,
-    value_heard: Impact,
+    heard: Heard<'a>,
     role: PhantomData<R>,
+}
+
+/// What was heard last and what it was worth: a cache, on which no verdict depends
+/// (`core/tests/observer.rs` compares a party that has it with one that has not).
+#[derive(Clone, Copy)]
+struct Heard<'a> {
+    disclosed: Disclosed<'a>,
+    value: Impact,
 }
 
 impl<'a> Party<'a, Current> {
@@ -109,8 +116,7 @@ impl<'a, R: Role> Party<'a, R> {
             willing: willingness > 0,
             threshold: impact.plus(Impact(u64::from(willingness))),
             offers_made: 0,
-            heard: Disclosed::NOTHING,
-            value_heard: Impact(0),
+            heard: Heard { disclosed: Disclosed::NOTHING, value: Impact(0) },
             role: PhantomData,
         }
     }
@@ -138,20 +144,26 @@ impl<'a, R: Role> Party<'a, R> {
     /// it is worth strictly more in this user's eyes (the paper's utility function). The
     /// two totals go to `observer` alone.
     pub fn judge<O: Observer>(&mut self, offer: &Offer<'a, R::Other>, observer: &mut O) -> Verdict {
-        let (known, value) = match offer.disclosed.continues(self.heard) {
-            true => (self.heard.conditions.len(), self.value_heard),
-            false => (0, Impact(0)),
-        };
-        let more =
-            offer.disclosed.impact_beyond(known, self.user.profile(), self.activation, self.aggregation);
-        self.value_heard = value.plus(more);
-        self.heard = offer.disclosed;
-        let weighing = Weighing { value: self.value_heard, threshold: self.threshold };
+        let weighing = Weighing { value: self.worth(offer.disclosed), threshold: self.threshold };
         observer.weighed(R::SIDE, weighing);
         match weighing.surplus() {
             Some(surplus) => Verdict::Acceptable(surplus),
             None => Verdict::Rejected,
         }
+    }
+
+    /// EI of what an offer discloses, in this user's eyes. If it continues what was heard
+    /// last, only the new part is weighed, so that a negotiation weighs each condition once.
+    fn worth(&mut self, disclosed: Disclosed<'a>) -> Impact {
+        let (known, value) = if disclosed.continues(self.heard.disclosed) {
+            (self.heard.disclosed.conditions.len(), self.heard.value)
+        } else {
+            (0, Impact(0))
+        };
+        let more = disclosed.impact_beyond(known, self.user.profile(), self.activation, self.aggregation);
+        let value = value.plus(more);
+        self.heard = Heard { disclosed, value };
+        value
     }
 
     /// Whether this user has an offer of this depth at all, made or still to be made.
