@@ -65,10 +65,7 @@ impl DecisionRecord {
             policy: decision.policy.name(),
             options: OptionsRecord::new(decision.options),
             variant: decision.options.to_string(),
-            candidates: match decision.agreement {
-                Some(_) => Vec::new(),
-                None => decision.candidates.iter().map(|&user| name(users, user)).collect(),
-            },
+            candidates: decision.candidates.iter().map(|&user| name(users, user)).collect(),
             welfare: users
                 .iter()
                 .zip(&decision.welfare)

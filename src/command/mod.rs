@@ -12,6 +12,7 @@ mod optimum;
 mod options;
 mod policies;
 mod present;
+mod progress;
 mod rank_range;
 mod regret;
 mod replicate;

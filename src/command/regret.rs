@@ -4,13 +4,12 @@ use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use selfneg_core::{Fallback, Options, TieRule};
 use selfneg_model::exact::decimal;
 use serde::Serialize;
 
 use super::options::ProtocolOptions;
-use super::{CommandError, Report, Status, json, rank_range};
+use super::{CommandError, Report, Status, json, progress, rank_range};
 use crate::regret::{Progress, RegretRecord, RegretSurvey};
 
 /// How much welfare the protocol loses at most: over all pairs of users with whole-number
@@ -61,11 +60,7 @@ impl Regret {
     }
 
     fn survey(&self, options: Options) -> Result<RegretSurvey, CommandError> {
-        // Drawn on standard error, and only on a terminal.
-        let bar = ProgressBar::new(1000);
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {msg} {elapsed}") {
-            bar.set_style(style);
-        }
+        let bar = progress::bar(1000, "{bar:40} {msg} {elapsed}");
         let survey = RegretSurvey::of(self.dispositions, self.ranks.clone(), options, &|progress| {
             let (length, position, doing) = match progress {
                 Progress::Sweep(thousandths) => (1000, thousandths, "whole ranks, swept"),

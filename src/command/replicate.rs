@@ -4,9 +4,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{CommandError, Report, Status, json};
+use super::{CommandError, Report, Status, json, progress};
 use crate::replicate::{DatasetReport, Replication, dataset_names, replicate};
 
 /// Rerun a checkout of the published replication package against its own logs
@@ -38,11 +37,7 @@ fn dataset_runs(text: &str) -> Result<(String, usize), String> {
 
 impl Replicate {
     pub(super) fn run(&self) -> Result<Report, CommandError> {
-        // Drawn on standard error, and only on a terminal.
-        let bar = ProgressBar::new(0);
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos} of {len} runs") {
-            bar.set_style(style);
-        }
+        let bar = progress::bar(0, "{bar:40} {pos} of {len} runs");
         let replication = replicate(&self.package, |progress| {
             bar.set_length(u64::try_from(progress.of).unwrap_or(u64::MAX));
             bar.set_position(u64::try_from(progress.done).unwrap_or(u64::MAX));

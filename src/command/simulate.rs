@@ -7,12 +7,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use selfneg_sim::World;
 use serde::Serialize;
 
 use super::durable::Durable;
-use super::{CommandError, Report, Status, json, write_whole};
+use super::{CommandError, Report, Status, json, progress, write_whole};
 use crate::mission::{Closing, Refusal, Staff};
 use crate::run::{Ended, HowItEnded, Outcome, Sketch, Storybook, Told, Watcher, clock, run};
 use crate::scenario::Scenario;
@@ -163,11 +163,7 @@ struct Bar {
 
 impl Bar {
     fn new(until: Duration, realtime: bool) -> Self {
-        let bar = ProgressBar::new(until.as_secs());
-        let style = ProgressStyle::with_template("{bar:20} {pos} of at most {len} s  {wide_msg}");
-        if let Ok(style) = style {
-            bar.set_style(style);
-        }
+        let bar = progress::bar(until.as_secs(), "{bar:20} {pos} of at most {len} s  {wide_msg}");
         Self { bar, real: realtime.then(Instant::now) }
     }
 }

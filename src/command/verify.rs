@@ -5,10 +5,9 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use selfneg_proofs::sweep::Domain;
 
-use super::{CommandError, Report, Status, json, rank_range};
+use super::{CommandError, Report, Status, json, progress, rank_range};
 use crate::verify::counterexample::{self, Written};
 use crate::verify::table::{by_subject, tell, to_json};
 use crate::verify::{Request, Subject, Verification, VerifyError, verify};
@@ -77,10 +76,7 @@ impl Verify {
             random_cases: self.random.unwrap_or(random),
             seed: self.seed,
         };
-        let bar = ProgressBar::new(0);
-        if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed} {msg}") {
-            bar.set_style(style);
-        }
+        let bar = progress::bar(0, "{bar:40} {pos}/{len} {elapsed} {msg}");
         let verification = verify(&request, |progress| {
             bar.set_length(progress.of);
             bar.set_position(progress.done);
