@@ -36,6 +36,7 @@
 //! | [`mod@optimum`] | what would have been best for all, and how much a decision lost |
 //! | [`mod@regret`] | how much a protocol variant loses at most, over a whole domain |
 //! | [`mod@policies`] | how often the policies for many users serve somebody whom another beats |
+//! | [`counterfactual`], [`disclosure`] | what would have changed a decision; how much was disclosed for it |
 //! | [`transcript`], [`story`], [`record`] | what was observed, told to people, as JSON |
 //! | [`lint`] | what is legal but surely not meant |
 //! | [`mod@replicate`] | rerun the published package against its own logs |
@@ -50,7 +51,9 @@
 
 pub mod binding;
 pub mod command;
+pub mod counterfactual;
 pub mod demo;
+pub mod disclosure;
 pub mod input;
 pub mod lint;
 pub mod mission;
