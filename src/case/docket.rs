@@ -82,7 +82,8 @@ impl Clerk<'_> {
                 }
                 None => self.docket.stray.push(entry.index),
             },
-            Record::Closed(evidence::Closed { user, .. }) | Record::Deferred(evidence::Deferred { user, .. }) => {
+            Record::Closed(evidence::Closed { user, .. })
+            | Record::Deferred(evidence::Deferred { user, .. }) => {
                 self.leave(UserId(*user));
             }
             Record::NegotiationsDropped(_) => self.drop_all(),

@@ -10,9 +10,7 @@ use selfneg_core::{Condition, Disclosure, Options};
 
 use super::recorded::RecordedDecision;
 use crate::binding::{BoundRules, BoundUser};
-use crate::mission::{
-    Disclosed, Event, GoalId, MissionRules, Recollection, Snapshot, UserData, UserId,
-};
+use crate::mission::{Disclosed, Event, GoalId, MissionRules, Recollection, Snapshot, UserData, UserId};
 use crate::precedence::{Decision, Policy, PrecedenceError, decide};
 use crate::trace::schema::evidence::{self, event::Event as OpenEvent, record::Record};
 use crate::trace::{Open, Recording, ReplayError, Step, decode_event};
