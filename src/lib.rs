@@ -44,12 +44,14 @@
 //! | [`scenario`] | who asks for what, when and where: the file format |
 //! | [`run`] | the mission drives the simulated robot |
 //! | [`trace`] | a run as evidence: written, read back, replayed |
+//! | [`mod@case`] | a trace's decisions, each with what it takes to make it again |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
 #![forbid(unsafe_code)]
 
 pub mod binding;
+pub mod case;
 pub mod command;
 pub mod counterfactual;
 pub mod demo;

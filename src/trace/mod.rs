@@ -29,6 +29,7 @@ pub use error::TraceError;
 pub use format::{FORMAT_KEY, FORMAT_MAJOR, FORMAT_MINOR, FORMAT_RECORD, PROGRAM};
 pub use reader::{Message, Reader};
 pub use recording::{Entry, Recording, Step};
+pub(crate) use replay::decode_event;
 pub use replay::{Difference, Replay, ReplayError};
 pub use sentence::{tell_event, tell_output};
 pub use topic::{PERSONAL, Topic, Whose};

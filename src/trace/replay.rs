@@ -151,7 +151,10 @@ fn difference(index: u64, replayed: Option<Output>, recorded: Option<&Entry>) ->
 }
 
 /// The event whose halves these are.
-fn decode_event(open: &evidence::Event, personal: Option<&personal::Input>) -> Result<Event, ReplayError> {
+pub(crate) fn decode_event(
+    open: &evidence::Event,
+    personal: Option<&personal::Input>,
+) -> Result<Event, ReplayError> {
     use event::Event as Open;
     let recorded = open.event.as_ref().ok_or(ReplayError::Unknown("event"))?;
     let missing = || ReplayError::NoPersonal { what: format!("event {}", open.index) };
