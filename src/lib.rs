@@ -45,6 +45,7 @@
 //! | [`run`] | the mission drives the simulated robot |
 //! | [`trace`] | a run as evidence: written, read back, replayed |
 //! | [`mod@case`] | a trace's decisions, each with what it takes to make it again |
+//! | [`mod@explain`] | why was Bob made to wait? For anybody, one user, the auditor |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
@@ -56,6 +57,7 @@ pub mod command;
 pub mod counterfactual;
 pub mod demo;
 pub mod disclosure;
+pub mod explain;
 pub mod input;
 pub mod lint;
 pub mod mission;

@@ -116,6 +116,11 @@ impl Change {
 /// Every single change that changes whom the robot serves, with its size.
 fn by_hand(told: &Told) -> BTreeSet<(u64, Change)> {
     let served = told.served();
+    changes(told, |who| who != served)
+}
+
+/// Every single change after which the robot serves such a user, with its size.
+fn changes(told: &Told, wanted: impl Fn(usize) -> bool) -> BTreeSet<(u64, Change)> {
     let mut flips = BTreeSet::new();
     let (rules, _) = told.bound();
     let known = |name: &str| rules.disposition(name).is_some();
@@ -123,7 +128,7 @@ fn by_hand(told: &Told) -> BTreeSet<(u64, Change)> {
         for (at, name) in told.users[user].conditions.iter().enumerate() {
             let mut other = told.clone();
             other.users[user].conditions.remove(at);
-            if other.served() != served {
+            if wanted(other.served()) {
                 flips.insert((1, Change::Withheld(user, name.clone())));
             }
         }
@@ -134,7 +139,7 @@ fn by_hand(told: &Told) -> BTreeSet<(u64, Change)> {
             for at in 0..=told.users[user].conditions.len() {
                 let mut other = told.clone();
                 other.users[user].conditions.insert(at, name.clone());
-                if other.served() != served {
+                if wanted(other.served()) {
                     flips.insert((1, Change::Added(user, name.clone())));
                 }
             }
@@ -143,7 +148,7 @@ fn by_hand(told: &Told) -> BTreeSet<(u64, Change)> {
             for to in 0..=told.scale() {
                 let mut other = told.clone();
                 let from = std::mem::replace(&mut other.users[user].ranks[d], to);
-                if other.served() != served {
+                if wanted(other.served()) {
                     flips.insert((u64::from(from.abs_diff(to)), Change::Rank(user, (*name).to_owned(), to)));
                 }
             }
@@ -161,7 +166,7 @@ fn by_hand(told: &Told) -> BTreeSet<(u64, Change)> {
         } else {
             place
         };
-        if who != served {
+        if wanted(who) {
             flips.insert((1, Change::Order(with)));
         }
     }
@@ -229,6 +234,36 @@ proptest! {
         let least = by_hand.first().map(|(size, _)| *size);
         prop_assert_eq!(found.single.first().map(|one| one.size), least);
         prop_assert!(found.single.is_sorted_by_key(|one| (one.size, one.edits[0].kind())));
+    }
+
+    #[test]
+    fn what_a_user_alone_could_have_changed(told in told(2..=4_usize), user in 0..4_usize) {
+        let user = user % told.users.len();
+        let served = told.served();
+        let wanted = |who: usize| if served == user { who != user } else { who == user };
+        let (rules, users) = told.bound();
+        let own = |change: &Change| match change {
+            Change::Withheld(whose, _) | Change::Added(whose, _) | Change::Rank(whose, ..) => *whose == user,
+            Change::Order(_) => false,
+        };
+        let by_hand: BTreeSet<_> =
+            changes(&told, wanted).into_iter().filter(|(_, change)| own(change)).collect();
+        let question = Question { rules: &rules, users: &users, options: told.options, policy: told.policy() };
+        let found = Counterfactuals::by_own_data(&question, user).unwrap();
+        let listed: BTreeSet<_> =
+            found.single.iter().map(|one| (one.size, Change::of(one.edits[0], &rules))).collect();
+        prop_assert!(listed.is_subset(&by_hand), "{:?} of {:?}", listed, by_hand);
+        let without_size = |set: &BTreeSet<(u64, Change)>| -> BTreeSet<(u8, String)> {
+            set.iter()
+                .map(|(_, change)| match change {
+                    Change::Withheld(_, name) => (0, name.clone()),
+                    Change::Added(_, name) => (1, name.clone()),
+                    Change::Rank(_, name, _) => (2, name.clone()),
+                    Change::Order(_) => unreachable!(),
+                })
+                .collect()
+        };
+        prop_assert_eq!(without_size(&listed), without_size(&by_hand));
     }
 
     #[test]

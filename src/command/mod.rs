@@ -5,6 +5,7 @@
 
 mod demo;
 mod durable;
+mod explain;
 mod graph;
 mod lint;
 mod negotiate;
@@ -29,12 +30,14 @@ use selfneg_model::lottery::LotteryError;
 use selfneg_model::order::OrderError;
 use serde::Serialize;
 
+use crate::explain::ExplainError;
 use crate::input::InputError;
 use crate::policies::PoliciesError;
 use crate::precedence::PrecedenceError;
 use crate::regret::RegretError;
 use crate::replicate::ReplicateError;
 use crate::scenario::ScenarioError;
+use crate::trace::TraceError;
 use crate::verify::VerifyError;
 
 /// Who gets the robot? Ethical decisions between interrupting users.
@@ -56,6 +59,7 @@ enum Command {
     Demo(demo::Demo),
     Negotiate(negotiate::Negotiate),
     Simulate(simulate::Simulate),
+    Explain(explain::Explain),
     Replicate(replicate::Replicate),
     Optimum(optimum::Optimum),
     Regret(regret::Regret),
@@ -126,6 +130,22 @@ pub enum CommandError {
     /// Somebody who watches a run cannot go on.
     #[error("the run cannot be recorded: {0}")]
     Recording(io::Error),
+    /// A trace cannot be read.
+    #[error("{}: {source}", file.display())]
+    Trace {
+        /// The trace.
+        file: PathBuf,
+        /// Why.
+        source: TraceError,
+    },
+    /// A trace's decisions cannot be explained so.
+    #[error("{}: {source}", file.display())]
+    Unexplained {
+        /// The trace.
+        file: PathBuf,
+        /// Why.
+        source: ExplainError,
+    },
     /// The arguments do not fit together.
     #[error("{0}")]
     Arguments(String),
@@ -152,6 +172,7 @@ impl Program {
             Command::Demo(demo) => demo.run(),
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Simulate(simulate) => simulate.run(),
+            Command::Explain(explain) => explain.run(),
             Command::Replicate(replicate) => replicate.run(),
             Command::Optimum(optimum) => optimum.run(),
             Command::Regret(regret) => regret.run(),

@@ -100,9 +100,30 @@ impl Counterfactuals {
         for with in 1..question.users.len() {
             single.extend(trial.first_of([Edit::Order { with }])?);
         }
-        single.sort_by_key(|found| (found.size, found.edits.first().map(|edit| (edit.kind(), *edit))));
+        single.sort_by_key(key);
         let pairs = if data { Pairs::NotNeeded } else { trial.pairs(pairs)? };
         Ok(Self { served: trial.served, scale: trial.scale, single, pairs, decided: trial.decided })
+    }
+
+    /// What this user alone could have changed by other data, so that the robot would have
+    /// served the user; or, if it did serve the user, somebody else. No pairs, no order.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn by_own_data(question: &Question<'_>, user: usize) -> Result<Self, PrecedenceError> {
+        let mut trial = Trial::new(question)?;
+        trial.wanted = (trial.served != user).then_some(user);
+        let mut single = trial.withheld(user)?;
+        single.extend(trial.added(user)?);
+        single.extend(trial.ranked(user)?);
+        single.sort_by_key(key);
+        Ok(Self {
+            served: trial.served,
+            scale: trial.scale,
+            single,
+            pairs: Pairs::NotNeeded,
+            decided: trial.decided,
+        })
     }
 
     /// The smallest change of all, if one was found.
@@ -123,10 +144,17 @@ impl Counterfactuals {
     }
 }
 
+/// Which of two single changes is the smaller.
+fn key(found: &Counterfactual) -> (u64, Option<(Kind, Edit)>) {
+    (found.size, found.edits.first().map(|edit| (edit.kind(), *edit)))
+}
+
 /// Decides changed cases and counts them.
 struct Trial<'a> {
     question: Question<'a>,
     served: usize,
+    /// Whom a change is to have served; `None`: anybody else.
+    wanted: Option<usize>,
     scale: u8,
     decided: u64,
 }
@@ -136,10 +164,10 @@ impl<'a> Trial<'a> {
         let served = decide(question.rules, question.users, question.options, question.policy)?.served;
         let ranks = question.users.iter().flat_map(BoundUser::ranks).map(|rank| rank.0);
         let scale = ranks.max().unwrap_or(0).max(PAPERS_HIGHEST);
-        Ok(Self { question: *question, served, scale, decided: 0 })
+        Ok(Self { question: *question, served, wanted: None, scale, decided: 0 })
     }
 
-    /// What comes of all these changes together, if it is not what was decided.
+    /// What comes of all these changes together, if it is what is looked for.
     fn changed(&mut self, edits: &[Edit]) -> Result<Option<Counterfactual>, PrecedenceError> {
         self.decided = self.decided.saturating_add(1);
         let Question { rules, options, policy, .. } = self.question;
@@ -149,7 +177,8 @@ impl<'a> Trial<'a> {
         }
         let decision = decide(rules, &users, options, policy)?;
         let served = edits.iter().rev().fold(decision.served, |place, edit| edit.who_is_at(place));
-        Ok((served != self.served).then(|| Counterfactual {
+        let changed = self.wanted.map_or(served != self.served, |wanted| served == wanted);
+        Ok(changed.then(|| Counterfactual {
             size: edits.iter().map(|edit| edit.size()).sum(),
             edits: edits.to_vec(),
             served,

@@ -1,0 +1,54 @@
+//! Why something cannot be explained.
+
+use super::Level;
+
+/// Why something cannot be explained.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExplainError {
+    /// There is no decision of that number.
+    #[error("decision {asked}: the trace has {there}{}", if *there == 0 { String::new() } else { format!(", expected 1 to {there}") })]
+    NoSuchDecision {
+        /// The number.
+        asked: u64,
+        /// How many there are.
+        there: usize,
+    },
+    /// The personal part is not there or cannot be read.
+    #[error(
+        "the level {level} needs the personal part of the trace, which cannot be read; expected the level public"
+    )]
+    NothingPersonal {
+        /// The level.
+        level: Level,
+    },
+    /// Nobody is called so.
+    #[error("no user {asked:?} in the trace; expected one of {}", numbers(known))]
+    NoSuchUser {
+        /// What was asked for.
+        asked: String,
+        /// The pseudonyms there are.
+        known: Vec<u32>,
+    },
+    /// Several people are called so.
+    #[error("{asked:?} is the name of several users; expected one of {}", numbers(known))]
+    SeveralUsers {
+        /// What was asked for.
+        asked: String,
+        /// Their pseudonyms.
+        known: Vec<u32>,
+    },
+    /// The user has nothing to do with it.
+    #[error("decision {decision} does not concern user {user}")]
+    NotConcerned {
+        /// The pseudonym.
+        user: u32,
+        /// The number.
+        decision: u64,
+    },
+}
+
+fn numbers(users: &[u32]) -> String {
+    let users: Vec<String> = users.iter().map(u32::to_string).collect();
+    users.join(", ")
+}
