@@ -43,6 +43,7 @@
 //! | [`scenario`] | who asks for what, when and where: the file format |
 //! | [`run`] | the mission drives the simulated robot |
 //! | [`trace`] | a run as evidence: written, read back, replayed |
+//! | [`seal`] | signatures, encryption and commitments of traces |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
@@ -62,6 +63,7 @@ pub mod regret;
 pub mod replicate;
 pub mod run;
 pub mod scenario;
+pub mod seal;
 pub mod story;
 pub mod trace;
 pub mod transcript;
