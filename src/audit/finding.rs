@@ -137,10 +137,21 @@ impl Log {
 
     /// A property was checked once, and did not hold.
     pub(super) fn broken(&mut self, property: Property, at: Place, what: impl Into<String>) {
+        self.broken_as(property, property.status(), at, what);
+    }
+
+    /// The same, where it makes of the trace something else than usual.
+    pub(super) fn broken_as(
+        &mut self,
+        property: Property,
+        status: Status,
+        at: Place,
+        what: impl Into<String>,
+    ) {
         if let Some((checked, broken)) = self.tallies.get_mut(property.place()) {
             *checked = checked.saturating_add(1);
             *broken = broken.saturating_add(1);
         }
-        self.find(property.status(), at, what);
+        self.find(status, at, what);
     }
 }

@@ -20,12 +20,7 @@ pub(super) struct InForce {
 
 /// Checks one decision. `current` is the user whom the robot served before it, if it served
 /// one.
-pub(super) fn check(
-    decision: &RecordedDecision,
-    current: Option<UserId>,
-    in_force: &InForce,
-    log: &mut Log,
-) {
+pub(super) fn check(decision: &RecordedDecision, current: Option<UserId>, in_force: &InForce, log: &mut Log) {
     let at = Place::entry(decision.index, decision.at).of_decision(Some(decision.decision));
     let participants = &decision.participants;
     let policy = crate::case::policy_for(in_force.policy, participants.len());
@@ -85,8 +80,7 @@ fn follows(
     };
     let (agreement, candidates) = match (policy, participants.len()) {
         (Policy::Published, 3) => {
-            let winner =
-                policy::published(|pair| outcome(place(pair.current()), place(pair.interrupting())));
+            let winner = policy::published(|pair| outcome(place(pair.current()), place(pair.interrupting())));
             (winner.map(place), vec![0, 1, 2])
         }
         (_, users) => match Condorcet::negotiate(users, &mut outcome).precedence() {
@@ -106,7 +100,9 @@ fn follows(
     }
     let may_be_served: Vec<UserId> = match (agreed, options.fallback) {
         (Some(winner), _) => vec![winner],
-        (None, Fallback::FirstCome) => candidates.first().and_then(|&first| user(first)).into_iter().collect(),
+        (None, Fallback::FirstCome) => {
+            candidates.first().and_then(|&first| user(first)).into_iter().collect()
+        }
         // Whose welfare is the largest is personal: made again with the inputs.
         (None, Fallback::Utilitarian) => candidates.iter().filter_map(|&candidate| user(candidate)).collect(),
     };

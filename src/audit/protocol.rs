@@ -95,10 +95,7 @@ fn check_end(negotiation: &RecordedNegotiation, walk: &Walk<'_>, decision: Optio
     }
     let rounds = u32::try_from(negotiation.rounds.len()).unwrap_or(u32::MAX);
     if end.rounds != rounds {
-        broken(
-            Property::Protocol,
-            format!("its end counts {} rounds, {rounds} are recorded", end.rounds),
-        );
+        broken(Property::Protocol, format!("its end counts {} rounds, {rounds} are recorded", end.rounds));
     }
     let Some(conclusion) = &walk.conclusion else {
         return broken(

@@ -41,7 +41,9 @@ impl<'r> Turn<'r> {
     /// The records, with their entries.
     pub(super) fn records(&self) -> impl Iterator<Item = (&'r Entry, &'r record::Record)> + use<'r> {
         self.replies.iter().filter_map(|entry| match &entry.step {
-            Step::Reply { open: Open::Record(open), .. } => open.record.as_ref().map(|record| (entry, record)),
+            Step::Reply { open: Open::Record(open), .. } => {
+                open.record.as_ref().map(|record| (entry, record))
+            }
             _ => None,
         })
     }

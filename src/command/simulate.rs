@@ -83,7 +83,7 @@ pub(super) fn play(scenario: &Scenario, realtime: bool, trace: Option<&Path>) ->
         move |source| CommandError::Unwritable { file, source }
     };
     let mut writer = match trace {
-        Some(file) => Some(TraceWriter::new(Durable::create(file)?).map_err(unwritable(file))?),
+        Some(file) => Some(TraceWriter::plain(Durable::create(file)?).map_err(unwritable(file))?),
         None => None,
     };
     let mut watchers: Vec<&mut dyn Watcher> = vec![&mut story, &mut sketch, &mut bar];
