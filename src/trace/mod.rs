@@ -11,7 +11,9 @@
 //! seal proves. See `docs/trace.md` for all topics and `docs/seal.md` for the seal.
 
 mod committed;
+mod copying;
 mod encode;
+mod erasing;
 mod error;
 mod format;
 mod frames;
@@ -28,10 +30,12 @@ mod sentence;
 mod setup;
 mod stamp;
 mod topic;
+mod unsealing;
 mod writer;
 
 pub use committed::Commitment;
 pub use encode::{EncodedEvent, EncodedOutput, Encoder, Open};
+pub use erasing::{EraseError, Erased, erase};
 pub use error::TraceError;
 pub use format::{FORMAT_KEY, FORMAT_MAJOR, FORMAT_MINOR, FORMAT_RECORD, PROGRAM, UNSEALED_RECORD};
 pub use opening::{Opened, PersonalPart, Unopened, open};
@@ -43,4 +47,5 @@ pub use replay::{Difference, Replay, ReplayError};
 pub use scan::Scan;
 pub use sentence::{tell_event, tell_output};
 pub use topic::{PERSONAL, SEALED, Topic, Whose};
+pub use unsealing::{UnsealError, Unsealed, unseal};
 pub use writer::TraceWriter;

@@ -6,12 +6,12 @@ use std::time::Duration;
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
-use mcap::{Compression, McapError, WriteOptions};
 use prost::Message;
 use selfneg_sim::{Person, World};
 
+use super::copying::{begin, into_io};
 use super::encode::{Encoder, Open};
-use super::format::{FORMAT_KEY, FORMAT_RECORD, PROGRAM, version};
+use super::format::{FORMAT_KEY, FORMAT_RECORD, version};
 use super::reader::PROTOBUF;
 use super::schema::Schema;
 use super::schema::evidence::{self, Commitment, End};
@@ -127,19 +127,7 @@ impl<W: Write> TraceWriter<W> {
             }
             Privacy::Sealed(recipients) => PrivacyInForce::ToBeSealed(recipients),
         };
-        let mut writer = WriteOptions::new()
-            .profile("")
-            .library(PROGRAM)
-            .compression(Some(Compression::Zstd))
-            // More threads would not change what is read, but might change the bytes.
-            .compression_threads(0)
-            // A chunk that is not finished is not in the file at all.
-            .disable_seeking(true)
-            .calculate_chunk_crcs(true)
-            .calculate_data_section_crc(true)
-            .calculate_summary_section_crc(true)
-            .create(NoSeek::new(file))
-            .map_err(into_io)?;
+        let mut writer = begin(file)?;
         let metadata = Metadata {
             name: FORMAT_RECORD.to_owned(),
             metadata: BTreeMap::from([(FORMAT_KEY.to_owned(), version())]),
@@ -513,12 +501,5 @@ fn log_message(at: Duration, message: String) -> Log {
         message,
         name: "mission".to_owned(),
         ..Log::default()
-    }
-}
-
-fn into_io(error: McapError) -> io::Error {
-    match error {
-        McapError::Io(error) => error,
-        other => io::Error::other(other),
     }
 }
