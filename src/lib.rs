@@ -46,11 +46,14 @@
 //! | [`trace`] | a run as evidence: written, read back, replayed |
 //! | [`mod@case`] | a trace's decisions, each with what it takes to make it again |
 //! | [`mod@explain`] | why was Bob made to wait? For anybody, one user, the auditor |
+//! | [`seal`] | signatures, encryption and commitments of traces |
+//! | [`audit`] | whether a trace is whole and unchanged, and the robot kept its rules |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
 #![forbid(unsafe_code)]
 
+pub mod audit;
 pub mod binding;
 pub mod case;
 pub mod command;
@@ -69,6 +72,7 @@ pub mod regret;
 pub mod replicate;
 pub mod run;
 pub mod scenario;
+pub mod seal;
 pub mod story;
 pub mod trace;
 pub mod transcript;

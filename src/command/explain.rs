@@ -1,20 +1,22 @@
 //! `selfneg explain`: why was Bob made to wait?
 
-use std::fs;
 use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 
-use super::{CommandError, Report, Status, json};
-use crate::explain::{Audience, Explained, Level, explain, pseudonym};
-use crate::input::InputError;
-use crate::trace::Recording;
+use super::key_files::auditor_keys;
+use super::{CommandError, Report, Status, json, trace_file};
+use crate::explain::{Audience, ExplainError, Explained, Level, explain, pseudonym};
+use crate::seal::SealState;
+use crate::trace::{Opened, PersonalPart, open};
 
-/// Explain the decisions of a trace: why was Bob made to wait? For anybody, for one user, or
-/// for the auditor (exit code 1 if the trace is damaged, or a decision is not the one that its
-/// rules give)
+/// Explain the decisions of a trace: why was Bob made to wait?
+///
+/// For anybody (nothing personal), for one user (only that user's own data), or for the auditor
+/// (everything). Exit code 1 if the trace is cut, damaged or not as signed, or a decision is not
+/// the one that its rules give; whose signature it is, `audit` asks.
 #[derive(Debug, Args)]
 pub(super) struct Explain {
     /// The trace
@@ -23,6 +25,9 @@ pub(super) struct Explain {
     /// The decision's number in the trace, from 1 [default: all]
     #[arg(value_name = "DECISION")]
     decision: Option<u64>,
+    /// An auditor's private key, for a sealed trace; may be given several times
+    #[arg(long, value_name = "KEY")]
+    identity: Vec<PathBuf>,
     /// For whom: anybody (nothing personal), one user (only that user's own data), or the
     /// auditor (everything) [default: user with --user, else auditor if the personal part can
     /// be read, else public]
@@ -46,17 +51,14 @@ struct ExplanationRecord<'a> {
 
 impl Explain {
     pub(super) fn run(&self) -> Result<Report, CommandError> {
-        let unusable = |source| CommandError::Unexplained { file: self.trace.clone(), source };
-        let bytes = fs::read(&self.trace)
-            .map_err(|source| InputError::Unreadable { file: self.trace.clone(), source })?;
-        let recording = Recording::read(&bytes)
-            .map_err(|source| CommandError::Trace { file: self.trace.clone(), source })?;
-        let audience = self.audience(&recording)?;
-        let explained = explain(&recording, audience, self.decision).map_err(unusable)?;
-        let mut warnings = Vec::new();
-        if let Some(damage) = &recording.damage {
-            warnings.push(format!("{}: {damage}; what comes before it is explained", self.trace.display()));
-        }
+        let keys = auditor_keys(&self.identity)?;
+        let bytes = trace_file::read(&self.trace)?;
+        let opened =
+            open(&bytes, &keys).map_err(|source| CommandError::Trace { file: self.trace.clone(), source })?;
+        let recording = &opened.recording;
+        let audience = self.audience(&opened)?;
+        let explained = explain(recording, audience, self.decision).map_err(|error| self.unusable(error))?;
+        let warnings = self.doubts(&opened);
         let wrong = explained.iter().any(Explained::is_wrong);
         let status = if wrong || !warnings.is_empty() { Status::Failed } else { Status::Passed };
         let output = if self.json {
@@ -66,7 +68,7 @@ impl Explain {
                 decisions: &explained,
             })?
         } else if explained.is_empty() {
-            "No decision.\n".to_owned()
+            "There is no decision to explain.\n".to_owned()
         } else {
             let texts: Vec<String> = explained.iter().map(|one| one.told().text()).collect();
             texts.join("\n\n")
@@ -74,22 +76,67 @@ impl Explain {
         Ok(Report { output, warnings, status })
     }
 
-    fn audience(&self, recording: &Recording) -> Result<Audience, CommandError> {
-        let readable = recording.rules.is_some();
-        match (self.level, &self.user) {
-            (Some(Level::User) | None, Some(user)) => {
-                let source = |source| CommandError::Unexplained { file: self.trace.clone(), source };
-                Ok(Audience::User(pseudonym(recording, user).map_err(source)?))
+    fn unusable(&self, source: ExplainError) -> CommandError {
+        CommandError::Unexplained { file: self.trace.clone(), source }
+    }
+
+    fn audience(&self, opened: &Opened) -> Result<Audience, CommandError> {
+        let readable = opened.recording.rules.is_some();
+        let level = match (self.level, &self.user) {
+            (None | Some(Level::User), Some(_)) => Level::User,
+            (Some(Level::User), None) => {
+                return Err(CommandError::Arguments(
+                    "--level user: expected --user with the user's pseudonym or name".to_owned(),
+                ));
             }
-            (Some(Level::User), None) => Err(CommandError::Arguments(
-                "--level user: expected --user with the user's pseudonym or name".to_owned(),
-            )),
             (Some(level), Some(_)) => {
-                Err(CommandError::Arguments(format!("--user: expected the level user, found {level}")))
+                return Err(CommandError::Arguments(format!(
+                    "--user: expected the level user, found {level}"
+                )));
             }
-            (Some(Level::Public), None) => Ok(Audience::Public),
-            (Some(Level::Auditor), None) => Ok(Audience::Auditor),
-            (None, None) => Ok(if readable { Audience::Auditor } else { Audience::Public }),
+            (Some(level), None) => level,
+            // Whoever gives a key wants what it opens.
+            (None, None) if readable || !self.identity.is_empty() => Level::Auditor,
+            (None, None) => Level::Public,
+        };
+        if level != Level::Public && opened.privacy == PersonalPart::Locked {
+            let recipients = match &opened.seal {
+                SealState::Signed(report) => report.recipients.iter().map(ToString::to_string).collect(),
+                SealState::Unsigned | SealState::Broken(_) => Vec::new(),
+            };
+            return Err(self.unusable(ExplainError::Locked { level, recipients }));
         }
+        match (level, &self.user) {
+            (Level::User, Some(user)) => {
+                let user = pseudonym(&opened.recording, user).map_err(|error| self.unusable(error))?;
+                Ok(Audience::User(user))
+            }
+            (Level::Auditor, _) => Ok(Audience::Auditor),
+            (Level::Public | Level::User, _) => Ok(Audience::Public),
+        }
+    }
+
+    /// Why the trace may not be as the robot wrote it.
+    fn doubts(&self, opened: &Opened) -> Vec<String> {
+        let mut doubts: Vec<String> = Vec::new();
+        doubts.extend(
+            opened
+                .recording
+                .damage
+                .as_ref()
+                .map(|damage| format!("{damage}; what comes before it is explained")),
+        );
+        match &opened.seal {
+            SealState::Unsigned => {}
+            SealState::Broken(fault) => doubts.push(fault.to_string()),
+            SealState::Signed(report) => doubts.extend(report.faults.iter().map(ToString::to_string)),
+        }
+        for unopened in &opened.unopened {
+            doubts.push(format!(
+                "message {}, about {}: {}",
+                unopened.sequence, unopened.subject, unopened.what
+            ));
+        }
+        doubts.iter().map(|doubt| format!("{}: {doubt}", self.trace.display())).collect()
     }
 }

@@ -16,11 +16,22 @@ pub enum ExplainError {
     },
     /// The personal part is not there or cannot be read.
     #[error(
-        "the level {level} needs the personal part of the trace, which cannot be read; expected the level public"
+        "the level {level} needs the personal part of the trace, which it does not hold; expected --level public"
     )]
     NothingPersonal {
         /// The level.
         level: Level,
+    },
+    /// The personal part is sealed, and no key fits.
+    #[error(
+        "the level {level} needs the personal part of the trace, which is sealed{}; expected --identity with a private key that fits",
+        sealed_to(recipients)
+    )]
+    Locked {
+        /// The level.
+        level: Level,
+        /// To whom it is sealed, as far as the trace says.
+        recipients: Vec<String>,
     },
     /// Nobody is called so.
     #[error("no user {asked:?} in the trace; expected one of {}", numbers(known))]
@@ -46,6 +57,10 @@ pub enum ExplainError {
         /// The number.
         decision: u64,
     },
+}
+
+fn sealed_to(recipients: &[String]) -> String {
+    if recipients.is_empty() { String::new() } else { format!(" to {}", recipients.join(", ")) }
 }
 
 fn numbers(users: &[u32]) -> String {
