@@ -130,7 +130,10 @@ impl Pieces {
     pub(crate) fn take_out(&mut self, mut is: impl FnMut(&evidence::record::Record) -> bool) {
         let place = self.messages.iter().position(|message| {
             &*message.schema == "selfneg.v1.Record"
-                && evidence::Record::decode(message.data.as_slice()).unwrap().record.is_some_and(|record| is(&record))
+                && evidence::Record::decode(message.data.as_slice())
+                    .unwrap()
+                    .record
+                    .is_some_and(|record| is(&record))
         });
         let place = place.expect("there is no such record");
         self.messages.remove(place);
