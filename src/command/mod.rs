@@ -3,6 +3,7 @@
 //! A command is given its arguments and yields a [`Report`]: what to print, and whether
 //! everything was right. Printing and exit codes are left to the program.
 
+mod audit;
 mod demo;
 mod durable;
 mod erase;
@@ -68,6 +69,7 @@ enum Command {
     Simulate(simulate::Simulate),
     Explain(explain::Explain),
     Keygen(keygen::Keygen),
+    Audit(audit::Audit),
     Unseal(unseal::Unseal),
     Erase(erase::Erase),
     Replicate(replicate::Replicate),
@@ -98,6 +100,8 @@ pub enum Status {
     Passed,
     /// A check failed.
     Failed,
+    /// Some of the input cannot be used; what can be was done.
+    Unusable,
 }
 
 /// Why a command could not do its work.
@@ -208,6 +212,7 @@ impl Program {
             Command::Simulate(simulate) => simulate.run(),
             Command::Explain(explain) => explain.run(),
             Command::Keygen(keygen) => keygen.run(),
+            Command::Audit(audit) => audit.run(),
             Command::Unseal(unseal) => unseal.run(),
             Command::Erase(erase) => erase.run(),
             Command::Replicate(replicate) => replicate.run(),
