@@ -273,7 +273,7 @@ impl<'a> Reader<'a> {
         }
         let after = self.at;
         self.magic(malformed(after, "no magic bytes after the footer"))
-            .map_err(|error| if self.bytes.len() == after { self.truncated() } else { error })?;
+            .map_err(|error| if after >= self.zeros { self.truncated() } else { error })?;
         if self.at < self.bytes.len() {
             return Err(malformed(self.at, "there is more after the end"));
         }
