@@ -1,6 +1,6 @@
 //! What a sealed trace shows to whom, and what its seal proves.
 
-#![expect(clippy::unwrap_used, clippy::indexing_slicing, clippy::panic, reason = "it is a test")]
+#![expect(clippy::unwrap_used, clippy::panic, reason = "it is a test")]
 
 #[path = "../examples/scripted_trace/run.rs"]
 #[allow(unreachable_pub, dead_code, reason = "shared with the example")]
@@ -9,9 +9,12 @@ mod run;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::sync::OnceLock;
+use std::time::Duration;
 
 use mcap::records::{MessageHeader, Metadata};
 use prost::Message as _;
+use selfneg::mission::{Event, Output};
+use selfneg::run::{Setup, Watcher};
 use selfneg::seal::checkpoint::{CHECKPOINT_RECORD, SEAL_RECORD, SignedCheckpoint};
 use selfneg::seal::commitment::{Fact, verify};
 use selfneg::seal::{AuditorKey, Privacy, RobotKey, Seal, SealPlace, SealReport, SealState};
@@ -98,6 +101,64 @@ fn without_the_key_the_seal_and_what_is_open_can_be_read() {
         assert!(opened.recording.decisions() >= 2);
     }
     assert!(Reader::new(sealed()).all(|message| !message.unwrap().topic.starts_with("/personal/")));
+}
+
+/// Tells a long story about every reply.
+struct Talkative(TraceWriter<Vec<u8>>);
+
+impl Watcher for Talkative {
+    fn begin(&mut self, setup: &Setup<'_>) -> std::io::Result<()> {
+        self.0.begin(setup)
+    }
+    fn event(&mut self, at: Duration, event: &Event) -> std::io::Result<()> {
+        self.0.event(at, event)
+    }
+    fn output(&mut self, at: Duration, output: &Output) -> std::io::Result<()> {
+        self.0.output(at, output)?;
+        self.0.sentence(at, &"and then ".repeat(4_000))
+    }
+    fn decided(&mut self, at: Duration) -> std::io::Result<()> {
+        self.0.decided(at)
+    }
+    fn end(&mut self, at: Duration) -> std::io::Result<()> {
+        self.0.end(at)
+    }
+}
+
+/// Much of one subject is written before the next decision, and only between two steps, so
+/// that a cut leaves no step with half of its personal part.
+#[test]
+fn a_long_story_is_sealed_in_pieces() {
+    let seal = Seal {
+        privacy: Privacy::Sealed(vec![auditor().public()]),
+        signer: Some(robot()),
+        random: Box::new(counting()),
+    };
+    let mut talkative = Talkative(TraceWriter::create(Vec::new(), seal).unwrap());
+    run::play(&mut talkative).unwrap();
+    let bytes = talkative.0.into_inner().unwrap();
+    let scan = Scan::of(&bytes);
+    let segments = scan.messages.iter().filter(|one| &*one.topic == "/sealed/several").count();
+    let checkpoints = scan.notes.iter().filter(|note| note.name == CHECKPOINT_RECORD).count();
+    assert!(segments > checkpoints, "{segments} segments, {checkpoints} checkpoints");
+    let opened = open(&bytes, &[auditor().clone()]).unwrap();
+    assert_eq!(opened.recording.entries, Recording::read(plain()).unwrap().entries);
+    assert!(report(&opened.seal).complete && report(&opened.seal).faults.is_empty());
+    keeps_every_decision_when_cut(&bytes);
+    // As if the file ended near each segment.
+    let content = Content::of(&bytes);
+    let is_segment = |message: &Message| message.topic.starts_with("/sealed/");
+    let near = |end: &usize| content.messages[end - 2..].iter().take(3).any(is_segment);
+    for end in (2..content.messages.len()).filter(near) {
+        let mut cut = content.clone();
+        cut.messages.truncate(end);
+        cut.notes.retain(|note| note.messages <= u64::try_from(end).unwrap());
+        let opened = cut.opened();
+        assert_eq!((&report(&opened.seal).faults[..], &opened.unopened[..]), (&[][..], &[][..]), "{end}");
+        if opened.recording.rules.is_some() {
+            assert_eq!(opened.recording.replay().unwrap().difference, None, "{end}");
+        }
+    }
 }
 
 #[test]
@@ -427,7 +488,8 @@ fn segments_of_another_place_or_trace_do_not_open() {
     };
     let mut writer = TraceWriter::create(Vec::new(), seal).unwrap();
     run::play(&mut writer).unwrap();
-    let other = Content::of(&writer.into_inner().unwrap());
+    let bytes = writer.into_inner().unwrap();
+    let other = Content::of(&bytes);
     let foreign = Sealed::decode(other.messages[bob[0]].data.as_slice()).unwrap();
     let opened = put(bob[0], foreign.ciphertext, foreign.digest);
     assert!(opened.unopened[0].what.contains("another trace"), "{:?}", opened.unopened);
@@ -437,7 +499,7 @@ fn segments_of_another_place_or_trace_do_not_open() {
     assert!(opened.unopened[0].what.contains("digest"), "{:?}", opened.unopened);
     // The checkpoints of one trace say nothing in another.
     let mut spliced = content.clone();
-    for (note, other) in spliced.checkpoints().into_iter().zip(other.clone().checkpoints()) {
+    for (note, other) in spliced.checkpoints().into_iter().zip(Content::of(&bytes).checkpoints()) {
         note.entries = other.entries.clone();
     }
     assert_eq!(report(&spliced.opened().seal).checkpoints, 0);
@@ -557,7 +619,10 @@ fn an_attachment_is_found() {
 /// Cut behind every record: what was decided before is there, and decided the same again.
 #[test]
 fn a_cut_trace_keeps_every_decision_before_with_its_personal_part() {
-    let bytes = sealed();
+    keeps_every_decision_when_cut(sealed());
+}
+
+fn keeps_every_decision_when_cut(bytes: &[u8]) {
     let mut at = mcap::MAGIC.len();
     let mut covered = 0;
     while at + 9 < bytes.len() - mcap::MAGIC.len() {
@@ -633,7 +698,7 @@ fn a_trace_of_format_1_0_is_read() {
         ..recording.header.clone()
     };
     content.messages[0].data = header.encode_to_vec();
-    let rules = recording.rules.clone().unwrap();
+    let rules = recording.rules.unwrap();
     content.messages[1].data = selfneg::trace::schema::personal::Rules {
         scenario: String::new(),
         building: String::new(),
