@@ -6,8 +6,8 @@ use serde::Serialize;
 use super::auditor_text;
 use super::open::OpenDecision;
 use super::own::own_worth;
-use super::redecision::Redecided;
 use super::told::Told;
+use crate::audit::Redecided;
 use crate::binding::{BoundUser, END_OF_GOAL};
 use crate::case::{Inputs, RecordedDecision, RecordedEvent};
 use crate::counterfactual::{Counterfactual, Counterfactuals, Edit, Pairs, Question};
@@ -213,7 +213,7 @@ pub(super) struct Source<'a> {
     pub(super) redecided: Redecided,
     pub(super) recorded: Option<&'a RecordedDecision>,
     pub(super) inputs: Option<&'a Inputs>,
-    pub(super) again: Option<&'a Decision>,
+    pub(super) again: Option<Decision>,
     /// Why there are no inputs.
     pub(super) unreadable: Option<String>,
     pub(super) emergency: Option<String>,
@@ -223,7 +223,7 @@ pub(super) struct Source<'a> {
 
 impl AuditorDecision {
     pub(super) fn new(source: Source<'_>) -> Self {
-        let consequences = match (source.recorded, source.inputs, source.again) {
+        let consequences = match (source.recorded, source.inputs, &source.again) {
             (Some(recorded), Some(inputs), Some(again)) if source.redecided == Redecided::Same => {
                 Some(Consequences { recorded, inputs, again })
             }
