@@ -249,15 +249,19 @@ impl OwnDecision {
 
 impl OwnPart {
     fn used(&self) -> Vec<String> {
+        let quoted: Vec<String> =
+            self.conditions.iter().take(self.disclosed).map(|name| format!("{name:?}")).collect();
         let mut sentences = vec![match (self.disclosed, self.conditions.len()) {
-            (_, 0) => "You told of no condition that was true of you, so nothing was disclosed.".to_owned(),
-            (0, many) => format!("Nothing of your {} was disclosed.", counted(many, "condition")),
+            (_, 0) => "You told of no condition that is true of you, so nothing was disclosed.".to_owned(),
+            (0, _) => "Nothing that is true of you was disclosed.".to_owned(),
+            (1, 1) => format!("What is true of you was disclosed: {}.", listed(&quoted)),
+            (some, many) if some == many => {
+                format!("All {many} conditions that are true of you were disclosed: {}.", listed(&quoted))
+            }
             (some, many) => {
-                let quoted: Vec<String> =
-                    self.conditions.iter().take(some).map(|name| format!("{name:?}")).collect();
                 format!(
-                    "Of your {} the robot disclosed {some} when it spoke for you: {}.",
-                    counted(many, "condition"),
+                    "Of {many} conditions that are true of you {some} {} disclosed: {}.",
+                    if some == 1 { "was" } else { "were" },
                     listed(&quoted)
                 )
             }
