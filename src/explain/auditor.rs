@@ -1,7 +1,7 @@
 //! What an auditor is told: everything that the trace holds of a decision, and what follows.
 
 use selfneg_core::{Disclosure, Ruling};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::auditor_text;
 use super::open::OpenDecision;
@@ -54,6 +54,7 @@ pub struct Participant {
     /// The true conditions in their order of disclosure.
     pub conditions: Vec<String>,
     /// The ranks in the active context: disposition, rank.
+    #[serde(serialize_with = "as_object")]
     pub ranks: Vec<(String, u8)>,
     /// The own complete offer in the user's own eyes.
     pub own_worth: u64,
@@ -198,6 +199,7 @@ pub struct DisclosedBySide {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Welfare {
     /// W of serving each user, by arrival.
+    #[serde(serialize_with = "as_object")]
     pub of_serving: Vec<(u32, u64)>,
     /// W of whom the robot serves.
     pub served: u64,
@@ -205,6 +207,14 @@ pub struct Welfare {
     pub best: u64,
     /// How much less the served one's is.
     pub regret: u64,
+}
+
+/// Pairs as one JSON object.
+fn as_object<K: Serialize, V: Serialize, S: Serializer>(
+    pairs: &[(K, V)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().map(|(key, value)| (key, value)))
 }
 
 /// What an explanation for the auditor is made from.
