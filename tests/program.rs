@@ -36,6 +36,7 @@ fn help_is_as_it_was() {
         ("help_graph", &["graph", "--help"]),
         ("help_simulate", &["simulate", "--help"]),
         ("help_keygen", &["keygen", "--help"]),
+        ("help_audit", &["audit", "--help"]),
         ("help_unseal", &["unseal", "--help"]),
         ("help_erase", &["erase", "--help"]),
         ("help_explain", &["explain", "--help"]),
