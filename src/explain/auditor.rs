@@ -103,6 +103,8 @@ pub struct WhatIf {
     pub single: Vec<Changed>,
     /// Of two changes at a time: `not-needed`, `found`, `none` or `none-of-the-first`.
     pub pairs: &'static str,
+    /// The smallest pair, if no single change of data does it and a pair was found.
+    pub pair: Option<Changed>,
     /// How many pairs were tried, if none does.
     pub pairs_tried: u64,
     /// Ranks from 0 to this were tried.
@@ -359,11 +361,11 @@ impl Consequences<'_> {
             policy: self.inputs.policy,
         };
         let found = Counterfactuals::of(&question).ok()?;
-        let (pairs, pairs_tried) = match &found.pairs {
-            Pairs::NotNeeded => ("not-needed", 0),
-            Pairs::Found(_) => ("found", 0),
-            Pairs::NoneOf { pairs } => ("none", *pairs),
-            Pairs::NoneOfTheFirst { pairs } => ("none-of-the-first", *pairs),
+        let (pairs, pair, pairs_tried) = match &found.pairs {
+            Pairs::NotNeeded => ("not-needed", None, 0),
+            Pairs::Found(pair) => ("found", Some(self.changed(pair)), 0),
+            Pairs::NoneOf { pairs } => ("none", None, *pairs),
+            Pairs::NoneOfTheFirst { pairs } => ("none-of-the-first", None, *pairs),
         };
         let waiting = (0..self.inputs.users.len()).filter(|&place| place != self.again.served);
         let by_own_data = waiting.filter_map(|place| {
@@ -377,6 +379,7 @@ impl Consequences<'_> {
             smallest: found.smallest().map(|one| self.changed(one)),
             single: found.single.iter().map(|one| self.changed(one)).collect(),
             pairs,
+            pair,
             pairs_tried,
             scale: found.scale,
             decided: found.decided,

@@ -50,7 +50,9 @@ pub struct OwnPart {
     pub disclosed: usize,
     /// What the own complete offer is worth in the user's own eyes, in ranks.
     pub own_worth: u64,
-    /// The ranks that add up to it: disposition, rank.
+    /// What being close to the goal adds to that.
+    pub willingness: u8,
+    /// The ranks that add up to the worth: disposition, rank.
     pub made_of: Vec<(String, u8)>,
     /// How many offers of others this user's side accepted, those held included.
     pub accepted: usize,
@@ -277,6 +279,9 @@ impl OwnPart {
                 listed(&parts)
             )
         });
+        if self.willingness > 0 {
+            sentences.push(format!("Being close to your goal added {} to that.", self.willingness));
+        }
         sentences.extend(match (self.accepted, self.rejected) {
             (0, 0) => None,
             (1, 0) => Some(
@@ -328,6 +333,7 @@ impl Source<'_> {
             disclosed: tally.disclosed.min(conditions.len()),
             conditions,
             own_worth: own_worth(inputs, me)?,
+            willingness: if place == 0 { inputs.options.willingness } else { 0 },
             made_of: made_of(inputs, me),
             accepted: tally.accepted,
             rejected: tally.rejected,
