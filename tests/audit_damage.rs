@@ -30,7 +30,7 @@ use selfneg::input::Truth;
 use selfneg::mission::{Event, Evidence, LOCATION, Output, Profile, Stated, UserData};
 use selfneg::run::{Setup, Watcher};
 use selfneg::seal::{AuditorKey, Privacy, RobotKey, Seal};
-use selfneg::trace::{Scan, TraceWriter};
+use selfneg::trace::{Message, Scan, TraceWriter};
 use selfneg_core::Options;
 
 /// By default every so many-th byte and length.
@@ -153,8 +153,10 @@ fn audited(bytes: &[u8]) -> Audit {
     audit(bytes, &sealed().keys)
 }
 
+type Metadata = (String, BTreeMap<String, String>);
+
 /// Messages and metadata: what a trace says, whatever the container around it.
-fn content(bytes: &[u8]) -> (Vec<selfneg::trace::Message>, Vec<(String, BTreeMap<String, String>)>) {
+fn content(bytes: &[u8]) -> (Vec<Message>, Vec<Metadata>) {
     let scan = Scan::of(bytes);
     let mut messages = scan.messages;
     for message in &mut messages {

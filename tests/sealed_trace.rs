@@ -308,6 +308,8 @@ fn who_is_not_there_and_what_is_not_sealed_cannot_be_erased() {
     assert!(matches!(erase(b"nothing", "user-1"), Err(EraseError::Trace(TraceError::NotMcap))));
 }
 
+type McapWriter = mcap::Writer<Cursor<Vec<u8>>>;
+
 /// What a file holds, to be written anew: what is in `notes` at the place of a message comes
 /// before it.
 #[derive(Clone)]
@@ -329,7 +331,7 @@ impl Content {
         writer.into_inner().into_inner()
     }
 
-    fn write(&self, writer: &mut mcap::Writer<Cursor<Vec<u8>>>) {
+    fn write(&self, writer: &mut McapWriter) {
         let mut notes = self.notes.iter().peekable();
         for (place, message) in (0..).zip(&self.messages) {
             while let Some(note) = notes.next_if(|note| note.messages <= place) {
@@ -602,7 +604,7 @@ fn changed_checkpoints_and_seals_are_found() {
 #[test]
 fn what_is_added_beside_the_messages_is_found() {
     let content = Content::of(sealed());
-    let added = |add: &dyn Fn(&mut mcap::Writer<Cursor<Vec<u8>>>)| {
+    let added = |add: &dyn Fn(&mut McapWriter)| {
         let mut writer = mcap::WriteOptions::new().create(Cursor::new(Vec::new())).unwrap();
         add(&mut writer);
         content.write(&mut writer);
@@ -612,7 +614,7 @@ fn what_is_added_beside_the_messages_is_found() {
         report(&opened.seal).faults.iter().map(|fault| fault.what.clone()).collect::<Vec<_>>()
     };
     assert_eq!(added(&|_| {}), [] as [&str; 0]);
-    let attachment = |writer: &mut mcap::Writer<Cursor<Vec<u8>>>| {
+    let attachment = |writer: &mut McapWriter| {
         let attachment = mcap::Attachment {
             log_time: 0,
             create_time: 0,
@@ -623,11 +625,11 @@ fn what_is_added_beside_the_messages_is_found() {
         writer.attach(&attachment).unwrap();
     };
     assert_eq!(added(&attachment)[0], "an attachment was added");
-    let schema = |writer: &mut mcap::Writer<Cursor<Vec<u8>>>| {
+    let schema = |writer: &mut McapWriter| {
         writer.add_schema("verdict", "protobuf", b"guilty").unwrap();
     };
     assert_eq!(added(&schema), ["a schema \"verdict\" was added"]);
-    let channel = |writer: &mut mcap::Writer<Cursor<Vec<u8>>>| {
+    let channel = |writer: &mut McapWriter| {
         writer.add_channel(0, "/guilty", "protobuf", &BTreeMap::new()).unwrap();
     };
     assert_eq!(added(&channel), ["a channel \"/guilty\" was added"]);

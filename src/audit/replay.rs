@@ -148,7 +148,7 @@ impl Comparison<'_> {
         let again: Vec<personal::Reply> = output
             .personal
             .iter()
-            .map(|(_, reply)| personal::Reply { index: entry.index, ..reply.clone() })
+            .map(|(_, reply)| personal::Reply { index: entry.index, ..*reply })
             .collect();
         if self.erased || entry.index >= self.recording.personal_until {
             personal.iter().all(|reply| again.contains(reply))

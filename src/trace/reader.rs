@@ -375,7 +375,7 @@ impl<'a> Reader<'a> {
                 if let Some(schema) = self.schemas.get_mut(&channel.schema_id) {
                     schema.is_used = true;
                 }
-                if !self.channels.get(&channel.id).is_some_and(|known| known.digest == described.digest) {
+                if self.channels.get(&channel.id).is_none_or(|known| known.digest != described.digest) {
                     self.unused.insert(described.digest, (wide(at), Arc::clone(&described.topic)));
                 }
                 self.channels.insert(channel.id, described.into());

@@ -1,4 +1,5 @@
 //! Random missions, rich in decisions: what an environment may do, and the trace of it.
+#![allow(dead_code, reason = "each test uses a part")]
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -289,12 +290,4 @@ impl Stage<'_> {
             self.watcher.decided(at).unwrap();
         }
     }
-}
-
-/// The same trace without everything personal.
-pub(crate) fn without_personal(bytes: &[u8]) -> Vec<u8> {
-    let mut pieces = super::rewriting::Pieces::of(bytes);
-    pieces.messages.retain(|message| !message.topic.starts_with(selfneg::trace::PERSONAL));
-    pieces.renumber();
-    pieces.to_bytes()
 }

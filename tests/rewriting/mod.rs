@@ -1,5 +1,6 @@
 //! A trace taken to pieces, and put together again after somebody has had a hand in it: with
 //! right checksums and right MCAP records, so that only the evidence itself can tell.
+#![allow(dead_code, reason = "each test uses a part")]
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
