@@ -21,6 +21,11 @@ use crate::seal::chain::{Digest, channel_digest};
 /// Most bytes of a decompressed chunk. Ours have about one megabyte.
 const MAX_CHUNK_BYTES: u64 = 256 << 20;
 
+/// Most bytes of all chunks decompressed, and beside them so many for each byte of the file. A
+/// forged file of a few kilobytes could ask for any amount.
+const MAX_BYTES: u64 = 1 << 30;
+const MAX_RATIO: u64 = 64;
+
 const OPCODE_AND_LENGTH: usize = 9;
 
 /// How messages and schemas are encoded.
@@ -132,6 +137,8 @@ pub struct Reader<'a> {
     last_chunk: Option<(u64, Places)>,
     /// How many chunks the summary leads to.
     indexed: usize,
+    /// The bytes of the chunks so far, decompressed.
+    unpacked: u64,
 }
 
 /// Times and offsets of a chunk's messages, by channel.
@@ -186,6 +193,7 @@ impl<'a> Reader<'a> {
             chunks: BTreeMap::new(),
             last_chunk: None,
             indexed: 0,
+            unpacked: 0,
         }
     }
 
@@ -365,6 +373,12 @@ impl<'a> Reader<'a> {
         let size = header.uncompressed_size;
         if size > MAX_CHUNK_BYTES {
             let what = format!("a chunk of {size} bytes; expected at most {MAX_CHUNK_BYTES}");
+            return Err(TraceError::Unsupported { at: wide(at), what });
+        }
+        self.unpacked = self.unpacked.saturating_add(size);
+        let most = MAX_BYTES.saturating_add(wide(self.bytes.len()).saturating_mul(MAX_RATIO));
+        if self.unpacked > most {
+            let what = format!("chunks of more than {most} bytes together");
             return Err(TraceError::Unsupported { at: wide(at), what });
         }
         let content = match header.compression.as_str() {
