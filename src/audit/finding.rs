@@ -11,6 +11,26 @@ use super::status::Status;
 /// Findings beyond so many are counted and not kept.
 const MOST_FINDINGS: usize = 1_000;
 
+/// Longer words of a file are not repeated whole.
+const MOST_LETTERS: usize = 500;
+
+/// Words that may come from a file whose writer nobody knows, as they may be printed: what
+/// would move a terminal's cursor, or begin a line of its own, is shown as an escape.
+pub(super) fn printable(text: &str) -> String {
+    let mut printable = String::with_capacity(text.len().min(MOST_LETTERS));
+    for (number, letter) in text.chars().enumerate() {
+        if number == MOST_LETTERS {
+            printable.push_str(" ...");
+            break;
+        }
+        match letter {
+            ' '..='~' => printable.push(letter),
+            other => printable.extend(other.escape_default()),
+        }
+    }
+    printable
+}
+
 /// One thing that is not as it should be. It names users by pseudonym alone, and no
 /// condition, rank or total.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -117,7 +137,7 @@ impl Log {
     pub(super) fn find(&mut self, status: Status, at: Place, what: impl Into<String>) {
         self.worst = Some(self.worst.map_or(status, |worst| worst.min(status)));
         if self.findings.len() < MOST_FINDINGS {
-            self.findings.push(Finding { at, what: what.into(), status });
+            self.findings.push(Finding { at, what: printable(&what.into()), status });
         } else {
             self.more = self.more.saturating_add(1);
         }

@@ -53,9 +53,9 @@ pub use status::Status;
 use crate::case::{Case, CaseError, Docket, NegotiatedCase, RecordedEmergency, options_in};
 use crate::mission::UserId;
 use crate::seal::{AuditorKey, RobotPublicKey};
-use crate::trace::schema::evidence::{record::Record, served};
+use crate::trace::schema::evidence::{GoalEnd, record::Record, served};
 use crate::trace::{Opened, PersonalPart, Recording, TraceError, open};
-use finding::Log;
+use finding::{Log, printable};
 use policy::InForce;
 use protocol::Sides;
 use turn::Turn;
@@ -119,7 +119,8 @@ impl Audit {
     }
 
     fn unreadable(error: &TraceError) -> Self {
-        let finding = Finding { at: place_of(error), what: error.to_string(), status: Status::Unreadable };
+        let what = printable(&error.to_string());
+        let finding = Finding { at: place_of(error), what, status: Status::Unreadable };
         Self {
             status: Status::Unreadable,
             decisions: Vec::new(),
@@ -170,9 +171,9 @@ pub fn audit_opened(opened: &Opened, keys: &Keys) -> Audit {
         findings: log.findings,
         more_findings: log.more,
         properties: properties.to_vec(),
-        unchecked,
+        unchecked: unchecked.iter().map(|what| printable(what)).collect(),
         seal,
-        erased: opened.erased.clone(),
+        erased: opened.erased.iter().map(|subject| printable(subject)).collect(),
     }
 }
 
@@ -338,6 +339,7 @@ impl<'o> Examination<'o> {
         for turn in &self.turns {
             let mut decided = None;
             let mut started = None;
+            let mut preempted = false;
             for (entry, record) in turn.records() {
                 match record {
                     Record::Decided(_) => {
@@ -349,7 +351,18 @@ impl<'o> Examination<'o> {
                             goal.served.as_ref().and_then(|served| served.served.as_ref())
                         {
                             started = started.or(Some(UserId(*user)));
+                            if preempted && decided.is_none() {
+                                let at = Place::entry(entry.index, entry.at);
+                                let what =
+                                    format!("user {user} takes the robot from another without a decision");
+                                log.broken(Property::Policy, at, what);
+                            }
                         }
+                    }
+                    Record::GoalEnded(goal) => {
+                        let served = goal.served.as_ref().and_then(|served| served.served.as_ref());
+                        preempted = goal.end() == GoalEnd::Preempted
+                            && matches!(served, Some(served::Served::User(_)));
                     }
                     _ => {}
                 }

@@ -1,6 +1,8 @@
 //! Whether a decision follows from the bilateral outcomes, and was made by the rules of the
 //! header.
 
+use std::collections::BTreeSet;
+
 use selfneg_core::policy::{self, Arrival};
 use selfneg_core::{Fallback, Options, Outcome, Side};
 use selfneg_model::{Condorcet, Precedence};
@@ -65,8 +67,13 @@ fn follows(
     {
         return Err(format!("user {} is being served, and is not the first who takes part", current.0));
     }
+    let mut pairs = BTreeSet::new();
     for held in &decision.negotiations {
         check_sides(held, decision, current, options)?;
+        if !pairs.insert((held.current, held.interrupting)) {
+            let (earlier, later) = (held.current.0, held.interrupting.0);
+            return Err(format!("two negotiations of user {earlier} and user {later}"));
+        }
     }
     let rounds: u64 = decision
         .negotiations

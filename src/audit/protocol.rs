@@ -272,6 +272,12 @@ impl<'n> Walk<'n> {
         worth: Option<Worth>,
         number: u32,
     ) -> Result<(), Wrong> {
+        // The receiver's totals are there where its personal part is, whatever is erased of others.
+        let is_acceptable = worth.map(|worth| worth.value > worth.threshold);
+        if is_acceptable.is_some_and(|acceptable| acceptable != (verdict != Ruling::Reject)) {
+            let what = "its verdict is not what follows from the receiver's own totals".to_owned();
+            return Err((Property::Protocol, what));
+        }
         let owes_reply_possible = self.made.of(receiver) < depth;
         match verdict {
             Ruling::Accept => {

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::io::Read as _;
 use std::sync::Arc;
 
-use mcap::records::{Record, op};
+use mcap::records::{ChunkIndex, MessageHeader, MessageIndex, Record, op};
 
 use super::error::TraceError;
 use super::format::{FORMAT_KEY, FORMAT_MAJOR, FORMAT_RECORD};
@@ -20,6 +20,11 @@ use crate::seal::chain::{Digest, channel_digest};
 
 /// Most bytes of a decompressed chunk. Ours have about one megabyte.
 const MAX_CHUNK_BYTES: u64 = 256 << 20;
+
+/// Most bytes of all chunks decompressed, and beside them so many for each byte of the file. A
+/// forged file of a few kilobytes could ask for any amount.
+const MAX_BYTES: u64 = 1 << 30;
+const MAX_RATIO: u64 = 64;
 
 const OPCODE_AND_LENGTH: usize = 9;
 
@@ -126,6 +131,27 @@ pub struct Reader<'a> {
     added: Vec<Added>,
     /// Channels that no message has used yet, by their digests, and where they are declared.
     unused: BTreeMap<Digest, (u64, Arc<str>)>,
+    /// The chunks of the data, by where they begin.
+    chunks: BTreeMap<u64, Chunk>,
+    /// The messages of the last chunk, if nothing but its indices has come since.
+    last_chunk: Option<(u64, Places)>,
+    /// How many chunks the summary leads to.
+    indexed: usize,
+    /// The bytes of the chunks so far, decompressed.
+    unpacked: u64,
+}
+
+/// Times and offsets of a chunk's messages, by channel.
+type Places = BTreeMap<u16, Vec<(u64, u64)>>;
+
+/// What an index may say of a chunk.
+#[derive(Clone, Debug)]
+struct Chunk {
+    length: u64,
+    /// The least and the largest time of its messages; 0 without any.
+    times: (u64, u64),
+    /// Where its message indices begin, by channel.
+    indices: BTreeMap<u16, u64>,
 }
 
 #[derive(Clone, Debug)]
@@ -164,6 +190,10 @@ impl<'a> Reader<'a> {
             notes: Vec::new(),
             added: Vec::new(),
             unused: BTreeMap::new(),
+            chunks: BTreeMap::new(),
+            last_chunk: None,
+            indexed: 0,
+            unpacked: 0,
         }
     }
 
@@ -242,8 +272,11 @@ impl<'a> Reader<'a> {
     }
 
     fn data(&mut self, opcode: u8, body: &[u8], at: usize) -> Result<(), TraceError> {
+        if opcode != op::MESSAGE_INDEX {
+            self.last_chunk = None;
+        }
         match opcode {
-            op::SCHEMA | op::CHANNEL | op::MESSAGE => self.content(opcode, body, at),
+            op::SCHEMA | op::CHANNEL | op::MESSAGE => self.content(opcode, body, at).map(|_| ()),
             op::CHUNK => self.chunk(body, at),
             op::METADATA => self.metadata(body, at),
             op::DATA_END => {
@@ -257,7 +290,7 @@ impl<'a> Reader<'a> {
             // A footer without an end of the data is no file that a writer finished.
             op::FOOTER => Err(malformed(at, "a footer before the end of the data")),
             op::HEADER if at == mcap::MAGIC.len() => Ok(()),
-            op::MESSAGE_INDEX => Ok(()),
+            op::MESSAGE_INDEX => self.message_index(body, at),
             // Attachments, and what is not known: nothing to yield. They are not parsed;
             // mcap's parser of attachments panics on short ones.
             _ => {
@@ -270,7 +303,10 @@ impl<'a> Reader<'a> {
     fn summary(&mut self, opcode: u8, body: &[u8], begin: usize, at: usize) -> Result<(), TraceError> {
         match opcode {
             op::FOOTER => {}
-            op::CHUNK_INDEX | op::STATISTICS | op::METADATA_INDEX | op::SUMMARY_OFFSET => return Ok(()),
+            // Viewers that seek go where it leads.
+            op::CHUNK_INDEX => return self.chunk_index(body, at),
+            op::METADATA_INDEX => return self.metadata_index(body, at),
+            op::STATISTICS | op::SUMMARY_OFFSET => return Ok(()),
             // Viewers that seek take them from here.
             op::SCHEMA | op::CHANNEL => return self.repeated(opcode, body, at),
             _ => {
@@ -283,6 +319,13 @@ impl<'a> Reader<'a> {
             let end = at.saturating_add(OPCODE_AND_LENGTH).saturating_add(16);
             let covered = self.bytes.get(begin..end).unwrap_or_default();
             check_crc("summary", begin, footer.summary_crc, covered)?;
+            // 0 is no summary at all.
+            if footer.summary_start != 0 && footer.summary_start != wide(begin) {
+                self.leads_elsewhere(at, "a footer that leads to another summary");
+            }
+            if self.indexed != 0 && self.indexed != self.chunks.len() {
+                self.leads_elsewhere(at, "a summary that leads to some chunks and not to all");
+            }
         }
         let after = self.at;
         self.magic(malformed(after, "no magic bytes after the footer"))
@@ -325,10 +368,17 @@ impl<'a> Reader<'a> {
     }
 
     fn chunk(&mut self, body: &[u8], at: usize) -> Result<(), TraceError> {
+        let body_length = body.len();
         let Record::Chunk { header, data } = parse(op::CHUNK, body, at)? else { return Ok(()) };
         let size = header.uncompressed_size;
         if size > MAX_CHUNK_BYTES {
             let what = format!("a chunk of {size} bytes; expected at most {MAX_CHUNK_BYTES}");
+            return Err(TraceError::Unsupported { at: wide(at), what });
+        }
+        self.unpacked = self.unpacked.saturating_add(size);
+        let most = MAX_BYTES.saturating_add(wide(self.bytes.len()).saturating_mul(MAX_RATIO));
+        if self.unpacked > most {
+            let what = format!("chunks of more than {most} bytes together");
             return Err(TraceError::Unsupported { at: wide(at), what });
         }
         let content = match header.compression.as_str() {
@@ -344,20 +394,89 @@ impl<'a> Reader<'a> {
         }
         check_crc("chunk", at, header.uncompressed_crc, &content)?;
         let mut rest = content.as_slice();
+        let mut messages = Places::new();
         while !rest.is_empty() {
             let (opcode, body) =
                 split_record(rest).ok_or_else(|| malformed(at, "a record leaves its chunk"))?;
             match opcode {
-                op::SCHEMA | op::CHANNEL | op::MESSAGE => self.content(opcode, body, at)?,
+                op::SCHEMA | op::CHANNEL | op::MESSAGE => {
+                    if let Some(header) = self.content(opcode, body, at)? {
+                        let offset = wide(content.len().saturating_sub(rest.len()));
+                        messages.entry(header.channel_id).or_default().push((header.log_time, offset));
+                    }
+                }
                 _ => self.add(opcode, at),
             }
             let length = OPCODE_AND_LENGTH.saturating_add(body.len());
             rest = rest.get(length..).unwrap_or_default();
         }
+        messages.values_mut().for_each(|of_channel| of_channel.sort_unstable());
+        let times = || messages.values().flatten().map(|(time, _)| *time);
+        let times = (times().min().unwrap_or_default(), times().max().unwrap_or_default());
+        if times != (header.message_start_time, header.message_end_time) {
+            self.leads_elsewhere(at, "a chunk with other times than those of its messages");
+        }
+        let length = wide(OPCODE_AND_LENGTH.saturating_add(body_length));
+        self.chunks.insert(wide(at), Chunk { length, times, indices: BTreeMap::new() });
+        self.last_chunk = Some((wide(at), messages));
         Ok(())
     }
 
-    fn content(&mut self, opcode: u8, body: &[u8], at: usize) -> Result<(), TraceError> {
+    /// It leads to the messages of the chunk before it, and to all of its channel.
+    fn message_index(&mut self, body: &[u8], at: usize) -> Result<(), TraceError> {
+        let Record::MessageIndex(index) = parse(op::MESSAGE_INDEX, body, at)? else { return Ok(()) };
+        let MessageIndex { channel_id, records } = index;
+        let mut entries: Vec<(u64, u64)> =
+            records.iter().map(|entry| (entry.log_time, entry.offset)).collect();
+        entries.sort_unstable();
+        let exact = body.len() == records.len().saturating_mul(16).saturating_add(6);
+        let Some((chunk, messages)) = &self.last_chunk else {
+            self.leads_elsewhere(at, "a message index without its chunk");
+            return Ok(());
+        };
+        if !exact || messages.get(&channel_id).map_or(&[][..], Vec::as_slice) != entries {
+            self.leads_elsewhere(at, "a message index that is not of the messages of its chunk");
+            return Ok(());
+        }
+        if let Some(chunk) = self.chunks.get_mut(chunk) {
+            chunk.indices.insert(channel_id, wide(at));
+        }
+        Ok(())
+    }
+
+    /// It leads to a chunk of the data, and says of it what is so.
+    fn chunk_index(&mut self, body: &[u8], at: usize) -> Result<(), TraceError> {
+        let Record::ChunkIndex(index) = parse(op::CHUNK_INDEX, body, at)? else { return Ok(()) };
+        let ChunkIndex { message_start_time, message_end_time, message_index_offsets, .. } = &index;
+        let same = self.chunks.get(&index.chunk_start_offset).is_some_and(|chunk| {
+            chunk.length == index.chunk_length
+                && chunk.times == (*message_start_time, *message_end_time)
+                && (message_index_offsets.is_empty() || chunk.indices == *message_index_offsets)
+        });
+        if same {
+            self.indexed = self.indexed.saturating_add(1);
+        } else {
+            self.leads_elsewhere(at, "a chunk index that is of no chunk of the data");
+        }
+        Ok(())
+    }
+
+    /// It leads to a metadata record of the data.
+    fn metadata_index(&mut self, body: &[u8], at: usize) -> Result<(), TraceError> {
+        let Record::MetadataIndex(index) = parse(op::METADATA_INDEX, body, at)? else { return Ok(()) };
+        if !self.notes.iter().any(|note| note.at == index.offset && note.name == index.name) {
+            self.leads_elsewhere(at, "a metadata index that is of no metadata record of the data");
+        }
+        Ok(())
+    }
+
+    /// Reading goes on: an index is for viewers that seek, and nothing is read by it here.
+    fn leads_elsewhere(&mut self, at: usize, what: &str) {
+        self.added.push(Added { at: wide(at), what: what.to_owned() });
+    }
+
+    /// Takes a schema, channel or message; of a message it gives the header.
+    fn content(&mut self, opcode: u8, body: &[u8], at: usize) -> Result<Option<MessageHeader>, TraceError> {
         match parse(opcode, body, at)? {
             Record::Schema { header, data } => {
                 let text = SchemaText {
@@ -396,10 +515,11 @@ impl<'a> Reader<'a> {
                     is_inner: false,
                 });
                 self.found = self.found.saturating_add(1);
+                return Ok(Some(header));
             }
             _ => {}
         }
-        Ok(())
+        Ok(None)
     }
 
     fn channel(&self, channel: &mcap::records::Channel, at: usize) -> Result<Channel, TraceError> {

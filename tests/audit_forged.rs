@@ -1,0 +1,210 @@
+//! Unsigned traces made to deceive: what nobody signed is still held against itself, and what
+//! it says cannot write lines of the auditor's.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    reason = "a test may panic"
+)]
+
+mod random_mission;
+mod rewriting;
+
+use prost::Message as _;
+use random_mission::Choice;
+use rewriting::Pieces;
+use selfneg::audit::{Audit, Keys, Status, audit};
+use selfneg::input::Truth;
+use selfneg::mission::{LOCATION, Profile, Stated, UserData};
+use selfneg::trace::schema::evidence::{self, Verdict, record::Record, round};
+use selfneg::trace::schema::personal::{self, input, reply};
+use selfneg::trace::{PERSONAL, Scan, TraceError};
+use selfneg_core::Options;
+
+fn data(ranks: [u8; 2], conditions: &[&'static str]) -> UserData {
+    let names = ["elderly people", "people in urgency"];
+    let stated = |&condition: &&'static str| Stated { condition: condition.into(), truth: Truth::True };
+    UserData {
+        profiles: vec![Profile {
+            label: "mall".into(),
+            ranks: names.into_iter().map(Into::into).zip(ranks).collect(),
+        }],
+        status: conditions.iter().map(stated).collect(),
+        context: vec![(LOCATION.into(), "mall".into())],
+    }
+}
+
+/// User 1 is being served; user 2 takes over after four rounds.
+fn honest() -> Pieces {
+    let choices = vec![
+        Choice::Request(1, 0),
+        Choice::Answer(data([5, 1], &["of nobody's rules"])),
+        Choice::Request(2, 1),
+        Choice::Answer(data([5, 1], &["of nobody's rules", "elderly"])),
+        Choice::Rounds(60),
+    ];
+    Pieces::of(&random_mission::trace(choices, Options::default(), None))
+}
+
+fn audited(pieces: &Pieces) -> Audit {
+    audit(&pieces.to_bytes(), &Keys::default())
+}
+
+fn openly(mut pieces: Pieces) -> Audit {
+    pieces.messages.retain(|message| !message.topic.starts_with(PERSONAL));
+    pieces.renumber();
+    audited(&pieces)
+}
+
+fn record(message: &selfneg::trace::Message) -> Option<Record> {
+    let is = &*message.schema == "selfneg.v1.Record";
+    is.then(|| evidence::Record::decode(message.data.as_slice()).unwrap().record.unwrap())
+}
+
+#[test]
+fn the_honest_trace_is_found_right() {
+    for found in [audited(&honest()), openly(honest())] {
+        assert_eq!(found.status, Status::Unsealed);
+        assert_eq!((found.decisions.len(), found.decisions[0].rounds), (1, 3), "{:?}", found.decisions);
+        assert_eq!(found.decisions[0].outcome, "interrupting");
+    }
+}
+
+#[test]
+fn nobody_takes_the_robot_without_a_decision() {
+    let mut pieces = honest();
+    pieces.messages.retain(|message| {
+        !matches!(
+            record(message),
+            Some(
+                Record::NegotiationStarted(_)
+                    | Record::Round(_)
+                    | Record::NegotiationEnded(_)
+                    | Record::Decided(_)
+            )
+        )
+    });
+    let found = openly(pieces);
+    assert_eq!(found.status, Status::WrongDecision, "{:#?}", found.findings);
+}
+
+#[test]
+fn two_users_negotiate_once_for_a_decision() {
+    let mut pieces = honest();
+    pieces.messages.retain(|message| !message.topic.starts_with(PERSONAL));
+    let first = pieces
+        .messages
+        .iter()
+        .position(|message| matches!(record(message), Some(Record::NegotiationStarted(_))))
+        .unwrap();
+    // Before the true one there is one that the current user wins in the second round.
+    let mut won = Vec::new();
+    for message in &pieces.messages {
+        let Some(mut is) = record(message) else { continue };
+        match &mut is {
+            Record::NegotiationStarted(_) => {}
+            Record::Round(round) if round.number <= 2 => {
+                let Some(round::Round::Offer(offer)) = &mut round.round else { panic!("no offer") };
+                let verdict = if round.number == 1 { Verdict::Reject } else { Verdict::Accept };
+                offer.set_verdict(verdict);
+            }
+            Record::NegotiationEnded(ended) => (ended.winner, ended.rounds) = (Some(1), 2),
+            _ => continue,
+        }
+        let data = evidence::Record { index: 0, record: Some(is) }.encode_to_vec();
+        won.push(selfneg::trace::Message { data, ..message.clone() });
+    }
+    pieces.messages.splice(first..first, won);
+    for message in &mut pieces.messages {
+        if let Some(Record::Decided(mut decided)) = record(message) {
+            decided.rounds += 2;
+            decided.agreement = Some(1);
+            decided.served = 1;
+            let decided = evidence::Record { index: 0, record: Some(Record::Decided(decided)) };
+            message.data = decided.encode_to_vec();
+        }
+    }
+    let found = openly(pieces);
+    let what = "two negotiations of user 1 and user 2";
+    assert!(found.findings.iter().any(|finding| finding.what.contains(what)), "{:#?}", found.findings);
+    assert_eq!(found.status, Status::WrongDecision);
+}
+
+#[test]
+fn a_verdict_against_the_receivers_own_totals_shows_though_the_senders_data_are_gone() {
+    let without_sender = |swap: bool| {
+        let mut pieces = honest();
+        pieces.messages.retain(|message| {
+            let is = &*message.schema == "selfneg.personal.v1.Input";
+            let input = is.then(|| personal::Input::decode(message.data.as_slice()).unwrap());
+            !input.is_some_and(|input| {
+                input.user == Some(2) && matches!(input.input, Some(input::Input::Data(_)))
+            })
+        });
+        pieces.renumber();
+        for message in &mut pieces.messages {
+            if swap && &*message.schema == "selfneg.personal.v1.Reply" {
+                let mut said = personal::Reply::decode(message.data.as_slice()).unwrap();
+                if let Some(reply::Reply::Worth(worth)) = &mut said.reply
+                    && worth.value > worth.threshold
+                {
+                    std::mem::swap(&mut worth.value, &mut worth.threshold);
+                    message.data = said.encode_to_vec();
+                }
+            }
+        }
+        audited(&pieces).status
+    };
+    assert_eq!(without_sender(false), Status::Unsealed);
+    assert_eq!(without_sender(true), Status::WrongDecision);
+}
+
+#[test]
+fn words_of_a_trace_write_no_line_of_the_auditor() {
+    let mut pieces = honest();
+    pieces.change_record(|record| match record {
+        Record::NegotiationEnded(ended) => {
+            ended.ending = format!("accepted\n\nrun.mcap: ok\n\u{1b}[8m\u{202e}{}", "x".repeat(100_000));
+            true
+        }
+        _ => false,
+    });
+    let found = audited(&pieces);
+    let told = found.tell("run.mcap");
+    assert_eq!(told.lines().filter(|line| line.starts_with("run.mcap: ")).count(), 1, "{told}");
+    assert!(told.chars().all(|letter| letter == '\n' || (' '..='~').contains(&letter)), "{told:?}");
+    assert!(told.len() < 10_000);
+}
+
+#[test]
+fn few_bytes_do_not_become_many() {
+    let content = {
+        let mut message = vec![5];
+        let body = 200_u64 << 20;
+        message.extend(body.to_le_bytes());
+        message.resize(9 + usize::try_from(body).unwrap(), 0);
+        message[9] = 1;
+        message
+    };
+    let packed = zstd::encode_all(content.as_slice(), 1).unwrap();
+    let record = |opcode: u8, body: &[u8]| [&[opcode][..], &(body.len() as u64).to_le_bytes(), body].concat();
+    let chunk = [
+        &[0; 16][..],
+        &(content.len() as u64).to_le_bytes(),
+        &[0; 4],
+        &4_u32.to_le_bytes(),
+        b"zstd",
+        &(packed.len() as u64).to_le_bytes(),
+        &packed,
+    ]
+    .concat();
+    let channel = [&1_u16.to_le_bytes()[..], &[0; 2], &1_u32.to_le_bytes(), b"x", &[0; 8]].concat();
+    let mut bytes = [&mcap::MAGIC[..], &record(4, &channel)].concat();
+    for _ in 0..20 {
+        bytes.extend(record(6, &chunk));
+    }
+    let scan = Scan::of(&bytes);
+    assert!(matches!(scan.damage, Some(TraceError::Unsupported { .. })), "{:?}", scan.damage);
+    assert_eq!(scan.messages.len(), 5);
+}
