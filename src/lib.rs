@@ -44,6 +44,7 @@
 //! | [`run`] | the mission drives the simulated robot |
 //! | [`trace`] | a run as evidence: written, read back, replayed |
 //! | [`mod@case`] | a trace's decisions, each with what it takes to make it again |
+//! | [`fleet`] | thousands of audited traces as tables |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
@@ -53,6 +54,7 @@ pub mod binding;
 pub mod case;
 pub mod command;
 pub mod demo;
+pub mod fleet;
 pub mod input;
 pub mod lint;
 pub mod mission;
