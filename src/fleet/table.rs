@@ -107,7 +107,6 @@ impl<R: Row, W: Write + Send> Table<R, W> {
         if self.held > 0 {
             self.write_group()?;
         }
-        self.file.finish()?;
         Ok((self.file.into_inner()?, self.written))
     }
 
