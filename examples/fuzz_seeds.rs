@@ -19,8 +19,9 @@ use std::time::Duration;
 use selfneg::mission::{Event, Output};
 use selfneg::run::{Setup, Watcher, run};
 use selfneg::scenario::Scenario;
+use selfneg::seal::{AuditorKey, Privacy, Seal};
 use selfneg::trace::TraceWriter;
-use targets::{InMemory, ROOM, SEPARATOR, packed, seeds_of, unpacked};
+use targets::{InMemory, ROOM, SEALED, SEPARATOR, keys, packed, robot, seeds_of, unpacked};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mall = Path::new("examples/mall");
@@ -68,15 +69,28 @@ fn main() -> Result<(), Box<dyn Error>> {
     write("scenario", "every-key", fs::read_to_string("examples/scenarios/annotated.toml")?)?;
 
     let scenario = Scenario::parse(&room, Path::new("examples/room/scenario.toml"), &InMemory)?;
-    let mut writer = TraceWriter::new(Vec::new())?;
+    let mut writer = TraceWriter::plain(Vec::new())?;
     run(&scenario, &mut [&mut Blind(&mut writer)])?;
     let trace = writer.into_inner().ok_or("the trace is not there")?;
+    // Only if it was emptied: it is random, and the targets know that no other was signed.
+    if SEALED.is_empty() {
+        write("sealed", "room.mcap", sealed(&scenario)?)?;
+    }
     let messages = unpacked(&trace);
     write("trace", "bare.mcap", packed(&messages))?;
     write("messages", "room", messages)?;
     write("trace", "room.mcap", &trace)?;
     write("trace", "cut.mcap", trace.get(..trace.len() / 2).unwrap_or_default())?;
     Ok(())
+}
+
+fn sealed(scenario: &Scenario) -> Result<Vec<u8>, Box<dyn Error>> {
+    let auditors = keys().identities.iter().map(AuditorKey::public).collect();
+    let random = |bytes: &mut [u8]| getrandom::fill(bytes).map_err(io::Error::other);
+    let seal = Seal { privacy: Privacy::Sealed(auditors), signer: Some(robot()), random: Box::new(random) };
+    let mut writer = TraceWriter::create(Vec::new(), seal)?;
+    run(scenario, &mut [&mut Blind(&mut writer)])?;
+    Ok(writer.into_inner().ok_or("the trace is not there")?)
 }
 
 fn write(target: &str, name: &str, content: impl AsRef<[u8]>) -> Result<(), Box<dyn Error>> {

@@ -97,7 +97,7 @@ fn every_decision_of_the_example_scenarios_is_made_again() {
     for name in ["mall", "three_users", "emergency", "elevator", "withholding", "annotated"] {
         let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/scenarios/{name}.toml"));
         let scenario = Scenario::open(&file).unwrap();
-        let mut writer = TraceWriter::new(Vec::new()).unwrap();
+        let mut writer = TraceWriter::plain(Vec::new()).unwrap();
         run(&scenario, &mut [&mut writer]).unwrap();
         let recording = Recording::read(&writer.into_inner().unwrap()).unwrap();
         assert!(recording.is_complete());

@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     (1..=number).into_par_iter().try_for_each(|seed| {
         let write = || -> Result<(), Box<dyn Error>> {
             let file = File::create(folder.join(format!("robot-{seed:06}.mcap")))?;
-            let mut writer = TraceWriter::new(BufWriter::new(file))?;
+            let mut writer = TraceWriter::plain(BufWriter::new(file))?;
             selfneg::run::run(&run::scenario(seed)?, &mut [&mut writer])?;
             Ok(())
         };

@@ -11,16 +11,20 @@ use std::time::Duration;
 
 use mcap::records::{MessageHeader, Metadata};
 use prost::Message as _;
+use selfneg::audit::{Audit, Keys, Status, audit};
 use selfneg::binding::{BoundRules, BoundUser, GoalChoice};
 use selfneg::demo;
+use selfneg::fleet::TraceRows;
 use selfneg::input::{InputError, Rules, User};
 use selfneg::precedence::{Policy, decide};
 use selfneg::record::DecisionRecord;
 use selfneg::scenario::{Folders, Scenario};
+use selfneg::seal::{AuditorKey, RobotKey};
 use selfneg::story;
 use selfneg::trace::schema::{Schema, evidence};
 use selfneg::trace::{
-    FORMAT_KEY, FORMAT_MAJOR, FORMAT_MINOR, FORMAT_RECORD, Reader, Recording, TraceError, TraceWriter,
+    FORMAT_KEY, FORMAT_MAJOR, FORMAT_MINOR, FORMAT_RECORD, Reader, Recording, TraceError, TraceWriter, erase,
+    open, unseal,
 };
 use selfneg_core::Options;
 use selfneg_sim::{Building, BuildingError};
@@ -56,7 +60,8 @@ pub fn trace(bytes: &[u8]) {
     check(&recording);
 }
 
-/// Messages of a trace, in a file that is as it should be: what is behind the format.
+/// Messages of a trace, in a file that is as it should be: what is behind the format. They are
+/// read, replayed and audited; nobody signed them, so the audit is never content.
 ///
 /// The input is a list of topic (one byte), length (two, the lower first) and content; where
 /// the content can be decoded its numbering is made right.
@@ -73,6 +78,79 @@ pub fn messages(bytes: &[u8]) {
         }
         Err(error) => one_line(&error),
     }
+    let found = audited(&file, &Keys::default());
+    assert!(found.status <= Status::Unsealed, "not signed, and {}", found.status);
+}
+
+/// A file, audited by somebody who has all keys, unsealed, and with a person's data erased.
+///
+/// No forgery passes: if the audit is content the file says what the committed trace says,
+/// which is the only one that the key ever signed.
+pub fn sealed(bytes: &[u8]) {
+    let keys = keys();
+    let found = audited(bytes, &keys);
+    if let Ok(opened) = open(bytes, &keys.identities) {
+        check(&opened.recording);
+        let rows = TraceRows::of("trace", Some(&opened), &found);
+        assert_eq!(rows.decisions.len(), found.decisions.len());
+        if found.status == Status::Ok {
+            let original = open(SEALED, &keys.identities).expect("it is committed").recording;
+            assert!(opened.recording.entries == original.entries, "a forgery passes");
+            assert_eq!(opened.recording.header, original.header, "a forgery passes");
+            assert_eq!(opened.recording.rules, original.rules, "a forgery passes");
+            assert_eq!(opened.recording.participants, original.participants, "a forgery passes");
+        }
+    }
+    match unseal(bytes, &keys.identities) {
+        Ok(clear) => assert!(Recording::read(&clear.bytes).is_ok(), "what was unsealed is no trace"),
+        Err(error) => one_line(&error),
+    }
+    match erase(bytes, "user-1") {
+        Ok(erased) => {
+            let opened = open(&erased.bytes, &keys.identities);
+            assert!(opened.is_ok_and(|opened| opened.erased.contains(&"user-1".to_owned())));
+        }
+        Err(error) => one_line(&error),
+    }
+}
+
+fn audited(bytes: &[u8], keys: &Keys) -> Audit {
+    let found = audit(bytes, keys);
+    let worst = found.findings.iter().map(|finding| finding.status).min();
+    assert_eq!(found.status, worst.unwrap_or(Status::Ok));
+    for finding in &found.findings {
+        one_line(&finding.what);
+    }
+    found
+}
+
+/// The one trace that [`robot`] signed.
+pub const SEALED: &[u8] = include_bytes!("../seeds/sealed/room.mcap");
+
+/// The robot key of the fuzz targets: it must never sign anything but their seed.
+///
+/// # Panics
+/// Never: the bytes are a key.
+#[must_use]
+pub fn robot() -> RobotKey {
+    RobotKey::generate(&mut |bytes: &mut [u8]| {
+        bytes.fill(0x5e);
+        Ok(())
+    })
+    .expect("the bytes are a key")
+}
+
+/// The auditor's key of the fuzz targets, which is public.
+const IDENTITY: &str = "AGE-SECRET-KEY-1ZCLUWEYX67L9PFFMHGCH7NLC055A46UF87693T8ZNZ9PWY3XQF0Q6TK822";
+
+/// What the auditor of the fuzz targets' seed brings along.
+///
+/// # Panics
+/// Never: the key is one.
+#[must_use]
+pub fn keys() -> Keys {
+    let identities = AuditorKey::parse_all(IDENTITY).expect("it is a key");
+    Keys { robots: vec![robot().public()], identities }
 }
 
 fn check(recording: &Recording) {
@@ -89,7 +167,7 @@ fn check(recording: &Recording) {
 }
 
 /// Topics of a trace, by the byte that stands for them.
-const TOPICS: [(&str, Schema); 18] = [
+const TOPICS: [(&str, Schema); 21] = [
     ("/mission/event", Schema::Event),
     ("/mission/lifecycle", Schema::Record),
     ("/mission/request", Schema::Record),
@@ -108,6 +186,9 @@ const TOPICS: [(&str, Schema); 18] = [
     ("/mission/header", Schema::Header),
     ("/mission/end", Schema::End),
     ("/log", Schema::Log),
+    ("/mission/commitment", Schema::Commitment),
+    ("/personal/opening", Schema::Opening),
+    ("/sealed/user-1", Schema::Sealed),
 ];
 
 /// The input of [`messages`] that stands for a trace; messages for viewers are left out.
@@ -334,7 +415,7 @@ pub fn scenario(bytes: &[u8]) {
 pub fn run(bytes: &[u8]) {
     let Some(mut scenario) = parsed(bytes) else { return };
     scenario.until = scenario.until.min(Duration::from_secs(20));
-    let mut trace = TraceWriter::new(Vec::new()).expect("memory takes it");
+    let mut trace = TraceWriter::plain(Vec::new()).expect("memory takes it");
     let outcome = selfneg::run::run(&scenario, &mut [&mut trace]).expect("memory takes it");
     let trace = trace.into_inner().expect("it was written");
     let recording = Recording::read(&trace).expect("it was written as a trace");
@@ -451,13 +532,14 @@ fn one_line(error: &impl Display) {
 }
 
 /// The functions of this file, by the name of their target.
-pub const TARGETS: [(&str, fn(&[u8])); 8] = [
+pub const TARGETS: [(&str, fn(&[u8])); 9] = [
     ("building", building),
     ("decision", decision),
     ("messages", messages),
     ("rules", rules),
     ("run", run),
     ("scenario", scenario),
+    ("sealed", sealed),
     ("trace", trace),
     ("user", user),
 ];

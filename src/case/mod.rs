@@ -27,6 +27,7 @@ mod inputs;
 mod recorded;
 
 pub use docket::Docket;
+pub(crate) use inputs::policy_for;
 pub use inputs::{CaseError, Inputs};
 pub use recorded::{
     RecordedDecision, RecordedEmergency, RecordedEnd, RecordedEvent, RecordedNegotiation, RecordedRound,

@@ -5,18 +5,24 @@
 
 mod demo;
 mod durable;
+mod erase;
 mod graph;
+mod key_files;
+mod keygen;
 mod lint;
 mod negotiate;
 mod optimum;
 mod options;
 mod policies;
 mod present;
+mod private_file;
 mod progress;
 mod rank_range;
 mod regret;
 mod replicate;
 mod simulate;
+mod trace_file;
+mod unseal;
 mod verify;
 
 use std::fs;
@@ -35,6 +41,8 @@ use crate::precedence::PrecedenceError;
 use crate::regret::RegretError;
 use crate::replicate::ReplicateError;
 use crate::scenario::ScenarioError;
+use crate::seal::KeyError;
+use crate::trace::{EraseError, UnsealError};
 use crate::verify::VerifyError;
 
 /// Who gets the robot? Ethical decisions between interrupting users.
@@ -56,6 +64,9 @@ enum Command {
     Demo(demo::Demo),
     Negotiate(negotiate::Negotiate),
     Simulate(simulate::Simulate),
+    Keygen(keygen::Keygen),
+    Unseal(unseal::Unseal),
+    Erase(erase::Erase),
     Replicate(replicate::Replicate),
     Optimum(optimum::Optimum),
     Regret(regret::Regret),
@@ -126,6 +137,30 @@ pub enum CommandError {
     /// Somebody who watches a run cannot go on.
     #[error("the run cannot be recorded: {0}")]
     Recording(io::Error),
+    /// A file holds no key.
+    #[error("{}: {source}", file.display())]
+    Key {
+        /// The file.
+        file: PathBuf,
+        /// Why not.
+        source: KeyError,
+    },
+    /// A trace cannot be unsealed.
+    #[error("{}: {source}", file.display())]
+    Unsealable {
+        /// The trace.
+        file: PathBuf,
+        /// Why not.
+        source: UnsealError,
+    },
+    /// Nothing can be erased from a trace.
+    #[error("{}: {source}", file.display())]
+    Unerasable {
+        /// The trace.
+        file: PathBuf,
+        /// Why not.
+        source: EraseError,
+    },
     /// The arguments do not fit together.
     #[error("{0}")]
     Arguments(String),
@@ -152,6 +187,9 @@ impl Program {
             Command::Demo(demo) => demo.run(),
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Simulate(simulate) => simulate.run(),
+            Command::Keygen(keygen) => keygen.run(),
+            Command::Unseal(unseal) => unseal.run(),
+            Command::Erase(erase) => erase.run(),
             Command::Replicate(replicate) => replicate.run(),
             Command::Optimum(optimum) => optimum.run(),
             Command::Regret(regret) => regret.run(),

@@ -6,42 +6,9 @@ use selfneg_core::Options;
 
 use super::schema;
 use super::table::{Cell, Row};
+use crate::audit::{Redecided, Status, Welfare};
 use crate::case::{RecordedDecision, RecordedEmergency, RecordedEvent};
 use crate::mission::{Evidence, UserId};
-
-/// What a decision lost for all its users together, as rank sums.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Loss {
-    /// Welfare of serving whom the robot served.
-    pub served: u64,
-    /// The most that serving anybody would have had.
-    pub optimum: u64,
-    /// The difference.
-    pub regret: u64,
-}
-
-/// What came of deciding again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Redecided {
-    /// It is as recorded.
-    Same,
-    /// It is not.
-    Differs,
-    /// What it takes was not there.
-    Unchecked,
-}
-
-impl Redecided {
-    /// `same`, `differs` or `unchecked`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Same => "same",
-            Self::Differs => "differs",
-            Self::Unchecked => "unchecked",
-        }
-    }
-}
 
 /// A row of `traces.parquet`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -72,13 +39,13 @@ pub struct TraceRow {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecisionRow {
     file: String,
-    trace_status: String,
+    trace_status: Status,
     number: u64,
     entry: u64,
     at: Duration,
     what: What,
     redecided: Redecided,
-    loss: Option<Loss>,
+    welfare: Option<Welfare>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -119,14 +86,20 @@ pub struct RoundRow {
 }
 
 impl DecisionRow {
+    /// Its number in the trace, from 1.
+    #[must_use]
+    pub const fn number(&self) -> u64 {
+        self.number
+    }
+
     /// A decision among users.
     #[must_use]
     pub fn negotiated(
         file: &str,
-        trace_status: &str,
+        trace_status: Status,
         decision: &RecordedDecision,
         redecided: Redecided,
-        loss: Option<Loss>,
+        welfare: Option<Welfare>,
     ) -> Self {
         let what = What::Negotiated {
             policy: decision.policy.map(|policy| policy.name()),
@@ -141,28 +114,33 @@ impl DecisionRow {
         };
         Self {
             file: file.to_owned(),
-            trace_status: trace_status.to_owned(),
+            trace_status,
             number: decision.decision,
             entry: decision.index,
             at: decision.at,
             what,
             redecided,
-            loss,
+            welfare,
         }
     }
 
     /// An emergency that was found certain.
     #[must_use]
-    pub fn emergency(file: &str, trace_status: &str, emergency: &RecordedEmergency) -> Self {
+    pub fn emergency(
+        file: &str,
+        trace_status: Status,
+        emergency: &RecordedEmergency,
+        redecided: Redecided,
+    ) -> Self {
         Self {
             file: file.to_owned(),
-            trace_status: trace_status.to_owned(),
+            trace_status,
             number: emergency.decision,
             entry: emergency.index,
             at: emergency.at,
             what: What::Emergency { category: emergency.category, evidence: emergency.evidence },
-            redecided: Redecided::Unchecked,
-            loss: None,
+            redecided,
+            welfare: None,
         }
     }
 }
@@ -228,7 +206,7 @@ impl Row for DecisionRow {
     fn into_cells(self) -> Vec<Cell> {
         let mut cells = vec![
             text(self.file),
-            text(self.trace_status),
+            text(self.trace_status.name()),
             number(self.number),
             number(self.entry),
             nanoseconds(self.at),
@@ -281,11 +259,11 @@ impl Row for DecisionRow {
                 ]);
             }
         }
-        cells.push(text(self.redecided.name()));
         cells.extend([
-            Cell::Number(self.loss.map(|loss| signed(loss.served))),
-            Cell::Number(self.loss.map(|loss| signed(loss.optimum))),
-            Cell::Number(self.loss.map(|loss| signed(loss.regret))),
+            text(redecided_name(self.redecided)),
+            Cell::Number(self.welfare.map(|welfare| signed(welfare.served))),
+            Cell::Number(self.welfare.map(|welfare| signed(welfare.optimum))),
+            Cell::Number(self.welfare.map(|welfare| signed(welfare.regret))),
         ]);
         cells
     }
@@ -339,6 +317,14 @@ fn signed(number: u64) -> i64 {
 
 fn nanoseconds(at: Duration) -> Cell {
     Cell::Number(Some(i64::try_from(at.as_nanos()).unwrap_or(i64::MAX)))
+}
+
+const fn redecided_name(redecided: Redecided) -> &'static str {
+    match redecided {
+        Redecided::Same => "same",
+        Redecided::Differs => "differs",
+        Redecided::Unchecked => "unchecked",
+    }
 }
 
 const fn evidence_name(evidence: Evidence) -> &'static str {

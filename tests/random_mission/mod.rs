@@ -208,7 +208,7 @@ pub(crate) fn play(
 
 /// The trace of a mission.
 pub(crate) fn trace(choices: Vec<Choice>, options: Options, policy: Option<Policy>) -> Vec<u8> {
-    let mut writer = TraceWriter::new(Vec::new()).unwrap();
+    let mut writer = TraceWriter::plain(Vec::new()).unwrap();
     play(choices, options, policy, &mut writer);
     writer.into_inner().unwrap()
 }
