@@ -27,6 +27,7 @@
 //! | `replay` | the whole mission again |
 //! | `seal` | signatures, recipients, commitments |
 
+mod document;
 mod finding;
 mod hard_ethics;
 mod policy;
@@ -41,6 +42,7 @@ mod wiping;
 
 use std::time::Duration;
 
+pub use document::AuditRecord;
 pub use finding::{Finding, Place};
 pub use property::{Property, PropertyResult, Verdict};
 pub use redecide::{Redecided, Welfare};

@@ -3,6 +3,7 @@
 //! A command is given its arguments and yields a [`Report`]: what to print, and whether
 //! everything was right. Printing and exit codes are left to the program.
 
+mod audit;
 mod demo;
 mod durable;
 mod erase;
@@ -65,6 +66,7 @@ enum Command {
     Negotiate(negotiate::Negotiate),
     Simulate(simulate::Simulate),
     Keygen(keygen::Keygen),
+    Audit(audit::Audit),
     Unseal(unseal::Unseal),
     Erase(erase::Erase),
     Replicate(replicate::Replicate),
@@ -95,6 +97,8 @@ pub enum Status {
     Passed,
     /// A check failed.
     Failed,
+    /// Some of the input cannot be used; what can be was done.
+    Unusable,
 }
 
 /// Why a command could not do its work.
@@ -188,6 +192,7 @@ impl Program {
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Simulate(simulate) => simulate.run(),
             Command::Keygen(keygen) => keygen.run(),
+            Command::Audit(audit) => audit.run(),
             Command::Unseal(unseal) => unseal.run(),
             Command::Erase(erase) => erase.run(),
             Command::Replicate(replicate) => replicate.run(),
