@@ -3,14 +3,56 @@
 
 use std::error::Error;
 use std::fmt::Write as _;
+use std::io;
 use std::path::Path;
 
 use fastrand::Rng;
 use selfneg::demo;
 use selfneg::input::{InputError, Rules, User};
 use selfneg::scenario::{Folders, Scenario};
+use selfneg::seal::{AuditorKey, Privacy, RobotKey, Seal};
+use selfneg::trace::{TraceWriter, erase};
 use selfneg_core::{Aggregation, Fallback, QuitRule, TieRule};
 use selfneg_sim::{Building, BuildingError};
+
+/// The fleet's keys: one for all its robots.
+pub struct Keys {
+    pub robot: RobotKey,
+    pub auditor: AuditorKey,
+}
+
+impl Keys {
+    /// New keys.
+    pub fn generate() -> io::Result<Self> {
+        Ok(Self { robot: RobotKey::generate(&mut random)?, auditor: AuditorKey::generate() })
+    }
+}
+
+/// The trace of a seed: signed and sealed. One in fifty is cut, one in sixty has a byte
+/// changed, one in seventy is plain, and of one in eighty somebody's data are erased.
+pub fn trace(seed: u64, keys: &Keys) -> Result<Vec<u8>, Box<dyn Error>> {
+    let plain = seed.is_multiple_of(70);
+    let seal = Seal {
+        privacy: if plain { Privacy::Plain } else { Privacy::Sealed(vec![keys.auditor.public()]) },
+        signer: if plain { None } else { Some(keys.robot.clone()) },
+        random: Box::new(random),
+    };
+    let mut writer = TraceWriter::create(Vec::new(), seal)?;
+    selfneg::run::run(&scenario(seed)?, &mut [&mut writer])?;
+    let mut bytes = writer.into_inner().ok_or("the trace is not there")?;
+    if seed.is_multiple_of(50) {
+        bytes.truncate(bytes.len().saturating_mul(3) / 4);
+    }
+    if seed.is_multiple_of(60) {
+        let middle = bytes.len() / 2;
+        bytes.iter_mut().skip(middle).take(1).for_each(|byte| *byte ^= 1);
+    }
+    Ok(if seed.is_multiple_of(80) && !plain { erase(&bytes, "user-1")?.bytes } else { bytes })
+}
+
+fn random(bytes: &mut [u8]) -> io::Result<()> {
+    getrandom::fill(bytes).map_err(io::Error::other)
+}
 
 /// The scenario of a seed.
 pub fn scenario(seed: u64) -> Result<Scenario, Box<dyn Error>> {

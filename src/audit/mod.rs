@@ -117,7 +117,9 @@ impl Audit {
         self.decisions.iter().filter(|decision| decision.redecided != Redecided::Unchecked).count()
     }
 
-    fn unreadable(error: &TraceError) -> Self {
+    /// Of what cannot be opened.
+    #[must_use]
+    pub fn unreadable(error: &TraceError) -> Self {
         let finding = Finding { at: place_of(error), what: error.to_string(), status: Status::Unreadable };
         Self {
             status: Status::Unreadable,

@@ -14,6 +14,7 @@ mod lint;
 mod negotiate;
 mod optimum;
 mod options;
+mod parquet_folder;
 mod policies;
 mod present;
 mod private_file;
@@ -36,6 +37,7 @@ use selfneg_model::lottery::LotteryError;
 use selfneg_model::order::OrderError;
 use serde::Serialize;
 
+use crate::fleet::TableError;
 use crate::input::InputError;
 use crate::policies::PoliciesError;
 use crate::precedence::PrecedenceError;
@@ -175,6 +177,14 @@ pub enum CommandError {
         file: PathBuf,
         /// Why.
         source: io::Error,
+    },
+    /// The tables of a fleet cannot be written.
+    #[error("{}: the tables cannot be written: {source}", folder.display())]
+    Tables {
+        /// Where to.
+        folder: PathBuf,
+        /// Why.
+        source: TableError,
     },
     /// A document cannot be made JSON.
     #[error("cannot be written as JSON: {0}")]
