@@ -21,7 +21,7 @@ use selfneg::run::{Setup, Watcher, run};
 use selfneg::scenario::Scenario;
 use selfneg::seal::{AuditorKey, Privacy, Seal};
 use selfneg::trace::TraceWriter;
-use targets::{InMemory, ROOM, SEALED, SEPARATOR, keys, packed, robot, seeds_of, unpacked};
+use targets::{InMemory, ROOM, SEALED, SEPARATOR, bare, keys, packed, robot, seeds_of, unpacked};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mall = Path::new("examples/mall");
@@ -76,11 +76,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     if SEALED.is_empty() {
         write("sealed", "room.mcap", sealed(&scenario)?)?;
     }
+    if !SEALED.is_empty() {
+        write("sealed", "bare.mcap", bare(SEALED))?;
+    }
     let messages = unpacked(&trace);
-    write("trace", "bare.mcap", packed(&messages))?;
+    let bare_trace = packed(&messages);
+    write("trace", "cut.mcap", bare_trace.get(..bare_trace.len() / 2).unwrap_or_default())?;
+    write("trace", "bare.mcap", bare_trace)?;
     write("messages", "room", messages)?;
     write("trace", "room.mcap", &trace)?;
-    write("trace", "cut.mcap", trace.get(..trace.len() / 2).unwrap_or_default())?;
+
     Ok(())
 }
 

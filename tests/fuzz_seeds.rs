@@ -56,6 +56,10 @@ fn the_seeds_reach_what_lies_behind_the_format() {
         assert!(recording.decisions() >= 2);
         assert_eq!(recording.replay().unwrap().difference, None);
     }
+    for name in ["room.mcap", "bare.mcap"] {
+        let found = selfneg::audit::audit(&seed("sealed", name), &targets::keys());
+        assert_eq!((found.status, found.findings), (selfneg::audit::Status::Ok, Vec::new()), "{name}");
+    }
     for name in ["room", "every-key"] {
         assert!(targets::parsed(&seed("scenario", name)).is_some(), "{name}");
     }
