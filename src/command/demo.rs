@@ -1,13 +1,14 @@
 //! `selfneg demo`: the paper's mall.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use selfneg_core::Options;
 
 use super::simulate::{play, told};
-use super::{CommandError, Report, Status, json, key_files, write_whole};
+use super::{CommandError, Report, Status, json, key_files, trace_file, write_whole};
+use crate::audit::{self, Audit, Keys, Redecided};
 use crate::binding::{BoundRules, GoalChoice};
 use crate::demo;
 use crate::precedence::{Policy, decide};
@@ -47,8 +48,10 @@ impl Demo {
         };
         let ran = play(&scenario, false, Some((&recorded, seal)))?;
         write_whole(&drawn, &ran.sketch.to_svg())?;
+        let found = self.audited(&recorded)?;
+        let status = if found.status == audit::Status::Ok { Status::Passed } else { Status::Failed };
         if self.json {
-            return Ok(Report { output: document, warnings: Vec::new(), status: Status::Passed });
+            return Ok(Report { output: document, warnings: Vec::new(), status });
         }
         let mut output = told(&scenario, &ran);
         let _ = writeln!(output, "\nThe decision again, with nothing of the building:\n");
@@ -63,6 +66,25 @@ impl Demo {
             self.out.join("robot.key").display(),
             self.out.join("auditor.pub").display()
         );
-        Ok(Report { output, warnings: Vec::new(), status: Status::Passed })
+        let _ = writeln!(
+            output,
+            "Audited with these keys it is {}: {} of {} decisions made again to the same rounds",
+            found.status,
+            found.decisions.iter().filter(|decision| decision.redecided == Redecided::Same).count(),
+            found.decisions.len()
+        );
+        if status != Status::Passed {
+            let _ = write!(output, "\n{}", found.tell(&recorded.display().to_string()));
+        }
+        Ok(Report { output, warnings: Vec::new(), status })
+    }
+
+    /// What an auditor makes of the trace, with the keys of the folder.
+    fn audited(&self, trace: &Path) -> Result<Audit, CommandError> {
+        let keys = Keys {
+            robots: vec![key_files::robot_public_key(&self.out.join("robot.pub"))?],
+            identities: key_files::auditor_keys(&[self.out.join("auditor.key")])?,
+        };
+        Ok(audit::audit(&trace_file::read(trace)?, &keys))
     }
 }
