@@ -3,7 +3,7 @@
 //!
 //! `.ci/parquet-readers` reads them with an independent reader, on many more traces.
 
-#![expect(clippy::unwrap_used, clippy::indexing_slicing, reason = "it is a test")]
+#![expect(clippy::unwrap_used, clippy::panic, clippy::indexing_slicing, reason = "it is a test")]
 
 #[path = "../examples/generate_fleet/run.rs"]
 #[allow(unreachable_pub, reason = "shared with the example")]

@@ -1,6 +1,6 @@
 //! What is written into a table is what is read from it, whatever the rows and however many.
 
-#![expect(clippy::unwrap_used, clippy::indexing_slicing, reason = "it is a test")]
+#![expect(clippy::unwrap_used, clippy::panic, clippy::indexing_slicing, reason = "it is a test")]
 
 use std::fs::File;
 use std::io::Write as _;

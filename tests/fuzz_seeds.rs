@@ -2,7 +2,7 @@
 //!
 //! `docs/fuzzing.md` tells how to fuzz. What breaks a property is a panic in the target.
 
-#![expect(clippy::unwrap_used, reason = "it is a test")]
+#![expect(clippy::unwrap_used, clippy::panic, reason = "it is a test")]
 
 #[path = "../fuzz/src/targets.rs"]
 #[allow(

@@ -570,8 +570,11 @@ fn one_line(error: &impl Display) {
     assert!(!told.trim().is_empty(), "an error without words");
 }
 
-/// The functions of this file, by the name of their target.
-pub const TARGETS: [(&str, fn(&[u8])); 9] = [
+/// A target's name and function.
+pub type Target = (&'static str, fn(&[u8]));
+
+/// All targets.
+pub const TARGETS: [Target; 9] = [
     ("building", building),
     ("decision", decision),
     ("messages", messages),
