@@ -47,7 +47,7 @@ const BATCH: usize = 64;
 
 #[derive(Serialize)]
 struct Document {
-    traces: Vec<AuditRecord>,
+    traces: Vec<Box<AuditRecord>>,
 }
 
 impl Audit {
@@ -83,7 +83,7 @@ impl Audit {
                 match audited {
                     Ok(mut audited) => {
                         if let (Some(tables), Some(rows)) = (&mut tables, audited.rows.take()) {
-                            tables.push(rows)?;
+                            tables.push(*rows)?;
                         }
                         done.push(audited);
                     }
@@ -128,9 +128,9 @@ impl Audit {
             status: found.status,
             decisions: found.decisions.len(),
             redecided: found.redecided(),
-            record: self.json.then(|| found.record(&name)),
+            record: self.json.then(|| Box::new(found.record(&name))),
             text: if self.json || tables { String::new() } else { found.tell(&name) },
-            rows: tables.then(|| TraceRows::of(&name, opened.as_ref().ok(), &found)),
+            rows: tables.then(|| Box::new(TraceRows::of(&name, opened.as_ref().ok(), &found))),
         }
     }
 }
@@ -140,10 +140,10 @@ struct Audited {
     status: audit::Status,
     decisions: usize,
     redecided: usize,
-    record: Option<AuditRecord>,
+    record: Option<Box<AuditRecord>>,
     text: String,
     /// Until they are written.
-    rows: Option<TraceRows>,
+    rows: Option<Box<TraceRows>>,
 }
 
 /// The traces at a path: itself, or all below a folder, sorted.

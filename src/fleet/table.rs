@@ -40,7 +40,7 @@ pub trait Row {
 ///
 /// Parquet is read by columns, and a row group's columns lie one after the other, so a group
 /// must be whole before any of it is written.
-pub const ROWS_IN_GROUP: usize = 16_384;
+pub const ROWS_IN_GROUP: usize = 4_096;
 
 /// Writes rows of one kind.
 pub struct Table<R: Row, W: Write + Send> {
