@@ -47,7 +47,7 @@ const BATCH: usize = 64;
 
 #[derive(Serialize)]
 struct Document {
-    traces: Vec<Box<AuditRecord>>,
+    traces: Vec<AuditRecord>,
 }
 
 impl Audit {
@@ -110,7 +110,9 @@ impl Audit {
         };
         let warnings = unusable.iter().map(ToString::to_string).collect();
         let output = match self.json {
-            true => json(&Document { traces: done.into_iter().filter_map(|one| one.record).collect() })?,
+            true => json(&Document {
+                traces: done.into_iter().filter_map(|one| one.record).map(|record| *record).collect(),
+            })?,
             false => told(&done, self.parquet.as_deref().zip(rows)),
         };
         Ok(Report { output, warnings, status })
