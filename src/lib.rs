@@ -48,6 +48,7 @@
 //! | [`mod@explain`] | why was Bob made to wait? For anybody, one user, the auditor |
 //! | [`seal`] | signatures, encryption and commitments of traces |
 //! | [`audit`] | whether a trace is whole and unchanged, and the robot kept its rules |
+//! | [`fleet`] | thousands of audited traces as tables |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
@@ -61,6 +62,7 @@ pub mod counterfactual;
 pub mod demo;
 pub mod disclosure;
 pub mod explain;
+pub mod fleet;
 pub mod input;
 pub mod lint;
 pub mod mission;

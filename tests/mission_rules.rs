@@ -694,6 +694,10 @@ mod specifications {
         assert!(matches!(refused(|s| s.goals[0].name = "t2".into()), SpecificationError::Twice(_)));
         assert!(matches!(refused(|s| s.goals[0].tasks.clear()), SpecificationError::NothingToDo(_)));
         assert!(matches!(refused(|s| s.limits.users = 1), SpecificationError::Size { .. }));
+        let most = |s: &mut Specification| {
+            (s.limits.users, s.limits.conditions, s.limits.requests) = (255, 60_000, 255)
+        };
+        assert!(matches!(refused(most), SpecificationError::Size { what: "limits", .. }));
         assert!(matches!(
             refused(|s| s.emergencies[0].goal = "nap".into()),
             SpecificationError::UnlistedGoal { .. }

@@ -118,7 +118,9 @@ impl Audit {
         self.decisions.iter().filter(|decision| decision.redecided != Redecided::Unchecked).count()
     }
 
-    fn unreadable(error: &TraceError) -> Self {
+    /// Of what cannot be opened.
+    #[must_use]
+    pub fn unreadable(error: &TraceError) -> Self {
         let what = printable(&error.to_string());
         let finding = Finding { at: place_of(error), what, status: Status::Unreadable };
         Self {

@@ -9,9 +9,12 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::key_files::{auditor_keys, robot_public_key};
+use super::parquet_folder::ParquetFolder;
 use super::{CommandError, Report, Status, json, progress, trace_file};
 use crate::audit::{self, AuditRecord, Keys};
+use crate::fleet::{RowCounts, Tables, TraceRows};
 use crate::input::InputError;
+use crate::trace::open;
 
 /// Check traces: seal, properties, and every decision made again from its inputs
 ///
@@ -29,10 +32,18 @@ pub(super) struct Audit {
     /// An auditor's private key, which opens what is personal; may be given several times
     #[arg(long, value_name = "AUDITOR_KEY")]
     identity: Vec<PathBuf>,
+    /// Write what is open of all decisions and rounds, and what was found, as three tables
+    /// into this folder (Parquet; docs/fleet.md), and print the summary alone
+    #[arg(long, value_name = "DIR")]
+    parquet: Option<PathBuf>,
     /// Print one JSON document instead of the findings in words
     #[arg(long)]
     json: bool,
 }
+
+/// How many traces are audited before their rows are written: enough to keep all workers busy,
+/// and few enough that what is held back does not grow with the number of traces.
+const BATCH: usize = 64;
 
 #[derive(Serialize)]
 struct Document {
@@ -55,24 +66,32 @@ impl Audit {
         }
         let bar =
             progress::bar(u64::try_from(files.len()).unwrap_or(u64::MAX), "{bar:20} {pos} of {len} traces");
-        // In the order of the files, whatever the order in which they are done. Each worker
-        // holds one file at a time, and of it keeps what is printed.
-        let audited: Vec<Result<Audited, CommandError>> = files
-            .par_iter()
-            .map(|file| {
-                let audited = trace_file::read(file).map(|bytes| self.audited(file, &bytes, &keys));
-                bar.inc(1);
-                audited
-            })
-            .collect();
-        bar.finish_and_clear();
+        let mut tables = self.parquet.as_deref().map(ParquetFolder::create).transpose()?;
         let mut done = Vec::new();
-        for audited in audited {
-            match audited {
-                Ok(audited) => done.push(audited),
-                Err(error) => unusable.push(error),
+        // In the order of the files, whatever the order in which they are done. Each worker
+        // holds one file at a time, and of it keeps what is printed or written.
+        for batch in files.chunks(BATCH) {
+            let audited: Vec<_> = batch
+                .par_iter()
+                .map(|file| {
+                    let audited = trace_file::read(file).map(|bytes| self.audited(file, &bytes, &keys));
+                    bar.inc(1);
+                    audited
+                })
+                .collect();
+            for audited in audited {
+                match audited {
+                    Ok(mut audited) => {
+                        if let (Some(tables), Some(rows)) = (&mut tables, audited.rows.take()) {
+                            tables.push(*rows)?;
+                        }
+                        done.push(audited);
+                    }
+                    Err(error) => unusable.push(error),
+                }
             }
         }
+        bar.finish_and_clear();
         if done.is_empty() {
             return Err(unusable.into_iter().next().unwrap_or_else(|| {
                 CommandError::Arguments(
@@ -80,6 +99,7 @@ impl Audit {
                 )
             }));
         }
+        let rows = tables.map(ParquetFolder::finish).transpose()?;
         let is = |status: audit::Status| done.iter().filter(|one| one.status == status).count();
         let status = if !unusable.is_empty() || is(audit::Status::Unreadable) == done.len() {
             Status::Unusable
@@ -90,21 +110,29 @@ impl Audit {
         };
         let warnings = unusable.iter().map(ToString::to_string).collect();
         let output = match self.json {
-            true => json(&Document { traces: done.into_iter().filter_map(|one| one.record).collect() })?,
-            false => told(&done),
+            true => json(&Document {
+                traces: done.into_iter().filter_map(|one| one.record).map(|record| *record).collect(),
+            })?,
+            false => told(&done, self.parquet.as_deref().zip(rows)),
         };
         Ok(Report { output, warnings, status })
     }
 
     fn audited(&self, file: &Path, bytes: &[u8], keys: &Keys) -> Audited {
-        let found = audit::audit(bytes, keys);
+        let opened = open(bytes, &keys.identities);
+        let found = match &opened {
+            Ok(opened) => audit::audit_opened(opened, keys),
+            Err(error) => audit::Audit::unreadable(error),
+        };
         let name = file.display().to_string();
+        let tables = self.parquet.is_some();
         Audited {
             status: found.status,
             decisions: found.decisions.len(),
             redecided: found.redecided(),
-            record: self.json.then(|| found.record(&name)),
-            text: if self.json { String::new() } else { found.tell(&name) },
+            record: self.json.then(|| Box::new(found.record(&name))),
+            text: if self.json || tables { String::new() } else { found.tell(&name) },
+            rows: tables.then(|| Box::new(TraceRows::of(&name, opened.as_ref().ok(), &found))),
         }
     }
 }
@@ -114,8 +142,10 @@ struct Audited {
     status: audit::Status,
     decisions: usize,
     redecided: usize,
-    record: Option<AuditRecord>,
+    record: Option<Box<AuditRecord>>,
     text: String,
+    /// Until they are written.
+    rows: Option<Box<TraceRows>>,
 }
 
 /// The traces at a path: itself, or all below a folder, sorted.
@@ -149,13 +179,20 @@ fn below(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), CommandError> {
     Ok(())
 }
 
-fn told(done: &[Audited]) -> String {
+fn told(done: &[Audited], tables: Option<(&Path, RowCounts)>) -> String {
     let mut text = String::new();
-    for one in done {
+    for one in done.iter().filter(|one| !one.text.is_empty()) {
         text.push_str(&one.text);
         text.push('\n');
     }
     text.push_str(&summary(done));
+    if let Some((folder, RowCounts { traces, decisions, rounds })) = tables {
+        let _ = writeln!(
+            text,
+            "{}: one row for each of {traces} traces, {decisions} decisions and {rounds} rounds.",
+            Tables::<fs::File>::FILES.map(|name| folder.join(name).display().to_string()).join(", ")
+        );
+    }
     text
 }
 

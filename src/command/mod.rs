@@ -15,6 +15,7 @@ mod lint;
 mod negotiate;
 mod optimum;
 mod options;
+mod parquet_folder;
 mod policies;
 mod present;
 mod private_file;
@@ -38,6 +39,7 @@ use selfneg_model::order::OrderError;
 use serde::Serialize;
 
 use crate::explain::ExplainError;
+use crate::fleet::TableError;
 use crate::input::InputError;
 use crate::policies::PoliciesError;
 use crate::precedence::PrecedenceError;
@@ -194,6 +196,14 @@ pub enum CommandError {
         file: PathBuf,
         /// Why.
         source: io::Error,
+    },
+    /// The tables of a fleet cannot be written.
+    #[error("{}: the tables cannot be written: {source}", folder.display())]
+    Tables {
+        /// Where to.
+        folder: PathBuf,
+        /// Why.
+        source: TableError,
     },
     /// A document cannot be made JSON.
     #[error("cannot be written as JSON: {0}")]

@@ -7,6 +7,7 @@ use selfneg_core::{Activation, Condition, Implication, Options, Rank, RulesError
 use serde::{Deserialize, Serialize};
 
 use super::event::{CategoryId, GoalId};
+use super::memory::NAME_BYTES;
 use crate::binding::{BoundRules, END_OF_GOAL};
 use crate::input::{InputError, Rules};
 use crate::precedence::Policy;
@@ -144,6 +145,22 @@ pub struct Limits {
     pub data_within_ms: u32,
 }
 
+/// Most bytes of user data that a mission allocates. A trace brings its own limits, and must
+/// not make whoever reads it allocate what they do not have.
+const MAX_MEMORY: usize = 64 << 20;
+
+impl Limits {
+    /// About how many bytes the data of all users may take.
+    fn memory(&self, dispositions: usize) -> usize {
+        let of_each = |number: usize, bytes: usize| number.saturating_mul(bytes);
+        let name = NAME_BYTES.saturating_add(1);
+        let one = of_each(self.profiles.into(), name.saturating_add(dispositions))
+            .saturating_add(of_each(self.conditions.into(), name.saturating_add(4)))
+            .saturating_add(of_each(self.attributes.into(), name.saturating_mul(2)));
+        of_each(self.users.into(), one)
+    }
+}
+
 impl Default for Limits {
     fn default() -> Self {
         Self {
@@ -249,6 +266,8 @@ impl MissionRules {
         size(specification.emergencies.len() > usize::from(u16::MAX), "emergencies", "at most 65,535")?;
         let most = bound.conditions().saturating_add(usize::from(limits.conditions));
         size(most > usize::from(u16::MAX), "limits: conditions", "65,535 with those of the rules")?;
+        let memory = limits.memory(bound.dispositions());
+        size(memory > MAX_MEMORY, "limits", "at most 64 MiB for the data of all users together")?;
 
         let mut goals = Vec::new();
         for goal in &specification.goals {
