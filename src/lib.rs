@@ -43,6 +43,7 @@
 //! | [`scenario`] | who asks for what, when and where: the file format |
 //! | [`run`] | the mission drives the simulated robot |
 //! | [`trace`] | a run as evidence: written, read back, replayed |
+//! | [`report`] | a trace as a page for people |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
@@ -60,6 +61,7 @@ pub mod precedence;
 pub mod record;
 pub mod regret;
 pub mod replicate;
+pub mod report;
 pub mod run;
 pub mod scenario;
 pub mod story;

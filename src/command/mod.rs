@@ -16,6 +16,7 @@ mod progress;
 mod rank_range;
 mod regret;
 mod replicate;
+mod report;
 mod simulate;
 mod verify;
 
@@ -35,6 +36,7 @@ use crate::precedence::PrecedenceError;
 use crate::regret::RegretError;
 use crate::replicate::ReplicateError;
 use crate::scenario::ScenarioError;
+use crate::trace::TraceError;
 use crate::verify::VerifyError;
 
 /// Who gets the robot? Ethical decisions between interrupting users.
@@ -56,6 +58,7 @@ enum Command {
     Demo(demo::Demo),
     Negotiate(negotiate::Negotiate),
     Simulate(simulate::Simulate),
+    Report(report::Report),
     Replicate(replicate::Replicate),
     Optimum(optimum::Optimum),
     Regret(regret::Regret),
@@ -129,6 +132,22 @@ pub enum CommandError {
     /// The arguments do not fit together.
     #[error("{0}")]
     Arguments(String),
+    /// A file cannot be read.
+    #[error("{}: cannot be read: {source}", file.display())]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A file is not a trace that can be read.
+    #[error("{}: {source}", file.display())]
+    Trace {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: TraceError,
+    },
     /// A file cannot be written.
     #[error("{}: cannot be written: {source}", file.display())]
     Unwritable {
@@ -152,6 +171,7 @@ impl Program {
             Command::Demo(demo) => demo.run(),
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Simulate(simulate) => simulate.run(),
+            Command::Report(report) => report.run(),
             Command::Replicate(replicate) => replicate.run(),
             Command::Optimum(optimum) => optimum.run(),
             Command::Regret(regret) => regret.run(),
