@@ -57,7 +57,7 @@ fn an_existing_decision_is_replaced_whole() {
     let mut files: Vec<_> =
         fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     files.sort();
-    assert_eq!(files, ["decision.json", "run.svg", "trace.mcap"]);
+    assert_eq!(files, ["decision.json", "report.html", "run.svg", "trace.mcap"]);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use clap::Args;
 use selfneg_core::Options;
 
 use super::simulate::{play, told};
-use super::{CommandError, Report, Status, json, write_whole};
+use super::{CommandError, Report, Status, json, report, write_whole};
 use crate::binding::{BoundRules, GoalChoice};
 use crate::demo;
 use crate::precedence::{Policy, decide};
@@ -17,7 +17,7 @@ use crate::story;
 /// The paper's mall: Bob interrupts while the robot serves Alice. Needs no input
 #[derive(Debug, Args)]
 pub(super) struct Demo {
-    /// Folder to write decision.json, trace.mcap and run.svg into; made if need be
+    /// Folder to write decision.json, trace.mcap, run.svg and report.html into; made if need be
     #[arg(long, value_name = "DIR", default_value = "selfneg-demo")]
     out: PathBuf,
     /// Print the decision as one JSON document instead of the story
@@ -34,11 +34,12 @@ impl Demo {
         let decision = decide(&rules, &users, Options::default(), Policy::Published)?;
         let document = json(&DecisionRecord::new(&decision, &users, &rules))?;
         let scenario = demo::scenario()?;
-        let [decided, recorded, drawn] =
-            ["decision.json", "trace.mcap", "run.svg"].map(|name| self.out.join(name));
+        let [decided, recorded, drawn, reported] =
+            ["decision.json", "trace.mcap", "run.svg", "report.html"].map(|name| self.out.join(name));
         write_whole(&decided, &document)?;
         let ran = play(&scenario, false, Some(&recorded))?;
         write_whole(&drawn, &ran.sketch.to_svg())?;
+        report::write(&recorded, &reported)?;
         if self.json {
             return Ok(Report { output: document, warnings: Vec::new(), status: Status::Passed });
         }
@@ -47,10 +48,11 @@ impl Demo {
         output.push_str(&story::tell(&decision, &users, &rules));
         let _ = writeln!(
             output,
-            "\nThe decision is in {}, the run is recorded in {} and drawn in {}",
+            "\nThe decision is in {}, the run is recorded in {} and drawn in {}; for people: {}",
             decided.display(),
             recorded.display(),
-            drawn.display()
+            drawn.display(),
+            reported.display()
         );
         Ok(Report { output, warnings: Vec::new(), status: Status::Passed })
     }

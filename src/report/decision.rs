@@ -208,7 +208,11 @@ impl Clerk<'_> {
             }
             Record::Decided(decided) => {
                 let negotiations = std::mem::take(&mut self.held);
-                self.decide(at, self.headline(decided), Why::Negotiated(self.negotiated(decided, negotiations)));
+                self.decide(
+                    at,
+                    self.headline(decided),
+                    Why::Negotiated(self.negotiated(decided, negotiations)),
+                );
             }
             Record::EmergencyDecided(known) => {
                 let category = self.who.emergency(known.category);
@@ -331,9 +335,11 @@ impl Clerk<'_> {
             (false, "first-come", _) => {
                 "There was no agreement, so the fallback decided: first come, first served.".to_owned()
             }
-            (false, "utilitarian", _) => "There was no agreement, so the fallback decided: whoever’s service \
+            (false, "utilitarian", _) => {
+                "There was no agreement, so the fallback decided: whoever’s service \
                                           is worth most to all of them together."
-                .to_owned(),
+                    .to_owned()
+            }
             (false, other, _) => format!("There was no agreement, so the fallback “{other}” decided."),
         };
         Negotiated {

@@ -182,11 +182,7 @@ impl Mover {
     }
 }
 
-fn entry<'m>(
-    movers: &'m mut BTreeMap<Shape, Mover>,
-    order: &mut Vec<Shape>,
-    shape: Shape,
-) -> &'m mut Mover {
+fn entry<'m>(movers: &'m mut BTreeMap<Shape, Mover>, order: &mut Vec<Shape>, shape: Shape) -> &'m mut Mover {
     if !order.contains(&shape) {
         order.push(shape.clone());
     }

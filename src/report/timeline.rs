@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use prost::Message as _;
 
+use crate::trace::schema::Schema;
 use crate::trace::schema::evidence::{self, event, record};
 use crate::trace::schema::foxglove::Log;
-use crate::trace::schema::Schema;
 use crate::trace::{Message, Topic};
 
 /// Everything that is told, by the second.

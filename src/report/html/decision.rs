@@ -75,13 +75,20 @@ fn table(decision: &Decision, nth: usize, negotiation: &Negotiation) -> Markup {
             h4 {
                 "The robot speaks for " (negotiation.current) " and for " (negotiation.interrupting)
             }
-            table {
+            // Phones show rows as cards; the roles keep this a table for screen readers then.
+            table.rounds role="table" {
                 caption {
                     "Negotiation " (nth) " of decision " (decision.number) ". "
                     (negotiation.interrupting) " interrupts and offers first."
                 }
-                thead { tr { th scope="col" { "Round" } th scope="col" { "Offer" } th scope="col" { "Worth" } th scope="col" { "Answer" } } }
-                tbody { @for round in &negotiation.rounds { (row(round)) } }
+                thead role="rowgroup" {
+                    tr role="row" {
+                        @for column in ["Round", "Offer", "Worth", "Answer"] {
+                            th scope="col" role="columnheader" { (column) }
+                        }
+                    }
+                }
+                tbody role="rowgroup" { @for round in &negotiation.rounds { (row(round)) } }
             }
             @match &negotiation.ending {
                 Some(ending) => p.ending {
@@ -100,22 +107,22 @@ fn table(decision: &Decision, nth: usize, negotiation: &Negotiation) -> Markup {
 
 fn row(round: &Round) -> Markup {
     html! {
-        tr.decisive[round.decisive] aria-current=[round.decisive.then_some("true")] {
-            th scope="row" { (round.number) @if round.decisive { " " span.badge { "decisive" } } }
+        tr.decisive[round.decisive] role="row" aria-current=[round.decisive.then_some("true")] {
+            th scope="row" role="rowheader" { (round.number) }
             @match &round.act {
                 Act::Quit => {
-                    td { (round.sender) " has no further offer and quits." }
-                    td.worth { span.none { "–" } }
-                    td.answer { span.none { "–" } }
+                    td role="cell" { (round.sender) " has no further offer and quits." }
+                    td.nothing role="cell" { "–" }
+                    td.nothing role="cell" { "–" }
                 }
                 Act::Offer { depth, discloses, worth, verdict } => {
-                    td {
+                    td role="cell" {
                         @match discloses {
                             Some(what) => { b { (round.sender) } " discloses " (what) "." },
                             None => { b { (round.sender) } " discloses one more condition, the " (ordinal(*depth)) "." },
                         }
                     }
-                    td.worth {
+                    td role="cell" {
                         @match worth {
                             Some((value, threshold)) => (bar(&round.receiver, *value, *threshold)),
                             None => span.none { "not shown" },
@@ -136,8 +143,9 @@ fn answer(round: &Round, verdict: Verdict) -> Markup {
         Verdict::Unspecified => ("reject", "?", "gives no answer"),
     };
     html! {
-        td.answer {
+        td role="cell" {
             span class={ "verdict " (class) } { span aria-hidden="true" { (sign) } " " (round.receiver) " " (word) }
+            @if round.decisive { " " span.badge { "decisive" } }
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The document: its head with the security policy, and its sections in order.
 
+use std::time::Duration;
+
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -64,7 +66,7 @@ fn masthead(page: &Page) -> Markup {
         header.masthead {
             p.kicker { "Selfneg report" }
             h1 { (page.title) }
-            p.lede { "A recording of " (clock(page.until)) " minutes with " (decisions) "." }
+            p.lede { "A recording of " (length(page.until)) " with " (decisions) "." }
             nav aria-label="On this page" {
                 ul {
                     li { a href="#answers" { "What was decided" } }
@@ -74,6 +76,15 @@ fn masthead(page: &Page) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// A time in words.
+fn length(time: Duration) -> String {
+    let seconds = time.as_secs();
+    match (seconds / 60, seconds % 60) {
+        (0, seconds) => format!("{seconds} s"),
+        (minutes, seconds) => format!("{minutes} min {seconds} s"),
     }
 }
 
@@ -88,7 +99,7 @@ fn answers(page: &Page) -> Markup {
                 ol.answers {
                     @for decision in &page.decisions {
                         li {
-                            p.answer {
+                            p.headline {
                                 a href={ "#decision-" (decision.number) } {
                                     "At " (clock(decision.at)) " " (decision.headline)
                                 }

@@ -27,6 +27,13 @@ pub(super) fn floors(page: &Page, moments: &[KeyMoment]) -> Markup {
                 (figure(page, number, floor, moments))
             }
         }
+        @if page.stage.robot().is_some() {
+            p.legend {
+                span { svg viewBox="0 0 30 10" aria-hidden="true" { path.gone d="M2 5H28" {} } " the robot’s way so far" }
+                span { svg viewBox="0 0 30 10" aria-hidden="true" { path.way d="M2 5H28" {} } " in the whole run" }
+                span { "pins: where it was at the numbered moments" }
+            }
+        }
         @if page.stage.floors.is_empty() {
             p { "This trace holds no map that could be drawn." }
         }
@@ -60,15 +67,17 @@ fn figure(page: &Page, number: usize, floor: &Floor, moments: &[KeyMoment]) -> M
                 @for place in &floor.places {
                     @let (x, y) = frame.at(place.x, place.y);
                     circle.place cx=(unit(x)) cy=(unit(y)) r="3" {}
-                    text.place x=(unit(x)) y=(unit(y + 15.0)) { (place.name) }
+                    text class={ "place " (frame.side(x, &place.name)) } x=(unit(x)) y=(unit(y + 15.0)) { (place.name) }
                 }
                 @for mover in movers { (figure_of(page, mover, number, &frame)) }
                 @for mark in &marks {
                     @let (x, y) = frame.at(mark.x, mark.y);
                     g.mark transform={ "translate(" (unit(x)) " " (unit(y)) ")" } {
-                        path d="M0 0L-5 -11H5z" {}
-                        rect x=(unit(-mark.half_width())) y="-27" width=(unit(2.0 * mark.half_width())) height="17" rx="8.5" {}
-                        text y="-14.5" { (mark.label) }
+                        g.pin {
+                            path d="M0 0L-5 -11H5z" {}
+                            rect x=(unit(-mark.half_width())) y="-27" width=(unit(2.0 * mark.half_width())) height="17" rx="8.5" {}
+                            text y="-14.5" { (mark.label) }
+                        }
                     }
                 }
             }
@@ -102,7 +111,8 @@ fn figure_of(page: &Page, mover: &Mover, floor: usize, frame: &Frame) -> Markup 
                 circle r=(unit(radius)) {}
                 path.nose d={ "M" (unit(radius * 1.6)) " 0L" (unit(radius * 0.5)) " " (unit(radius * 0.8)) "V" (unit(-radius * 0.8)) "z" } {}
             }
-            text y=(unit(-radius - 5.0)) { (name) }
+            // Below the robot, since marks are above it.
+            text y=(unit(if mover.shape == Shape::Robot { radius + 14.0 } else { -radius - 5.0 })) { (name) }
         }
     }
 }
@@ -199,6 +209,16 @@ impl Frame {
         let cell = floor.resolution * SCALE;
         let rows = floor.cells.len().checked_div(floor.columns).unwrap_or(0);
         Self { origin: floor.origin, width: whole(floor.columns) * cell, height: whole(rows) * cell, cell }
+    }
+
+    /// Where a text belongs so that it does not leave the drawing: the class of its anchor.
+    fn side(&self, x: f64, text: &str) -> &'static str {
+        let half = text.chars().map(|_| 4.5).sum::<f64>();
+        match (x - half < 0.0, x + half > self.width) {
+            (false, true) => "right",
+            (true, false) => "left",
+            _ => "middle",
+        }
     }
 
     fn at(&self, x: f64, y: f64) -> (f64, f64) {

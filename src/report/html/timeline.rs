@@ -8,13 +8,15 @@ use crate::run::clock;
 
 pub(super) fn list(timeline: &Timeline) -> Markup {
     html! {
-        div.timeline id="timeline" role="region" aria-labelledby="timeline-title" tabindex="0" {
+        div.chronicle {
             h3 id="timeline-title" { "Timeline" }
-            @if timeline.moments.is_empty() {
-                p { "This trace tells nothing in sentences." }
-            }
-            ol {
-                @for moment in &timeline.moments { (item(moment)) }
+            div.timeline id="timeline" role="region" aria-labelledby="timeline-title" tabindex="0" {
+                @if timeline.moments.is_empty() {
+                    p { "This trace tells nothing in sentences." }
+                }
+                ol {
+                    @for moment in &timeline.moments { (item(moment)) }
+                }
             }
         }
     }

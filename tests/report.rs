@@ -1,0 +1,316 @@
+//! `selfneg report`: what the page says, that it needs nothing else, and that nothing in a trace
+//! can break out of its place in it.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    clippy::string_slice,
+    reason = "a test may panic"
+)]
+
+mod scaffold;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use base64::Engine as _;
+use proptest::prelude::*;
+use scaffold::program::{refusal, selfneg};
+use selfneg::report::{Act, Page, Source, Why};
+use selfneg::trace::{Message, Reader, Recording};
+use sha2::Digest as _;
+use tempfile::TempDir;
+
+const SCENARIOS: [&str; 6] = ["mall", "three_users", "emergency", "elevator", "withholding", "annotated"];
+
+fn examples() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("examples")
+}
+
+fn simulate(scenario: &Path, trace: &Path) {
+    selfneg().arg("simulate").arg(scenario).arg("--trace").arg(trace).assert().success();
+}
+
+/// The traces of all example scenarios, by their names.
+fn traces() -> &'static TempDir {
+    static TRACES: OnceLock<TempDir> = OnceLock::new();
+    TRACES.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        for name in SCENARIOS {
+            simulate(
+                &examples().join(format!("scenarios/{name}.toml")),
+                &folder.path().join(format!("{name}.mcap")),
+            );
+        }
+        folder
+    })
+}
+
+fn trace(name: &str) -> Vec<u8> {
+    fs::read(traces().path().join(format!("{name}.mcap"))).unwrap()
+}
+
+fn page_of(file: &str, bytes: &[u8]) -> Option<Page> {
+    let recording = Recording::read(bytes).ok()?;
+    let messages: Vec<Message> = Reader::new(bytes).map_while(Result::ok).collect();
+    Some(Page::of(Source { file, bytes, recording: &recording, messages: &messages }))
+}
+
+fn page(name: &str) -> Page {
+    page_of(&format!("{name}.mcap"), &trace(name)).unwrap()
+}
+
+/// What is between `from` and `to`.
+fn between<'t>(text: &'t str, from: &str, to: &str) -> &'t str {
+    let rest = text.split_once(from).unwrap_or_else(|| panic!("no {from}")).1;
+    rest.split_once(to).unwrap_or_else(|| panic!("no {to}")).0
+}
+
+/// All values of an attribute.
+fn values<'t>(html: &'t str, attribute: &str) -> Vec<&'t str> {
+    let from = format!(" {attribute}=\"");
+    html.split(&from).skip(1).map(|rest| rest.split_once('"').unwrap().0).collect()
+}
+
+/// The page as a person reads it: a line a block, without drawings.
+fn read_out(html: &str) -> String {
+    let mut text = String::new();
+    let mut rest = between(html, "<body>", "<script>");
+    let mut drawing = false;
+    while let Some(start) = rest.find('<') {
+        if !drawing {
+            text.push_str(&rest[..start]);
+        }
+        let end = start + rest[start..].find('>').unwrap();
+        let tag = &rest[start..=end];
+        match tag {
+            _ if tag.starts_with("<svg") => drawing = true,
+            "</svg>" => drawing = false,
+            _ if ["<h", "<p", "<li", "<tr", "<div", "<dt", "<figcaption", "<caption", "<footer"]
+                .iter()
+                .any(|block| tag.starts_with(block)) =>
+            {
+                text.push('\n');
+            }
+            _ if ["<td", "<th", "<dd", "<button", "<option"].iter().any(|cell| tag.starts_with(cell)) => {
+                text.push_str("  ");
+            }
+            _ => {}
+        }
+        rest = &rest[end + 1..];
+    }
+    let lines = text.lines().map(str::trim_end).filter(|line| !line.trim().is_empty());
+    lines.collect::<Vec<_>>().join("\n").replace("&quot;", "\"").replace("&amp;", "&")
+}
+
+#[test]
+fn it_is_read_like_this() {
+    insta::assert_snapshot!("mall", read_out(&page("mall").to_html()));
+    insta::assert_snapshot!("emergency", read_out(&page("emergency").to_html()));
+}
+
+#[test]
+fn the_program_writes_the_page_and_the_same_trace_gives_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let written = ["first.html", "second.html"].map(|name| {
+        let file = folder.path().join(name);
+        let mut command = selfneg();
+        command.arg("report").arg(traces().path().join("three_users.mcap")).arg("-o").arg(&file);
+        command.assert().code(0).stderr("").stdout(format!("The report is in {}\n", file.display()));
+        fs::read_to_string(file).unwrap()
+    });
+    assert_eq!(written[0], written[1]);
+    assert_eq!(written[0], page("three_users").to_html());
+}
+
+/// Every round of every decision is on the page as it was recorded, and each negotiation with an
+/// agreement has one decisive round, the accepted one.
+#[test]
+fn every_round_is_there_and_the_decisive_one_is_marked() {
+    for name in SCENARIOS {
+        let page = page(name);
+        let recorded = Recording::read(&trace(name)).unwrap();
+        assert_eq!(u64::try_from(page.decisions.len()).unwrap(), recorded.decisions(), "{name}");
+        for decision in &page.decisions {
+            let negotiations = match &decision.why {
+                Why::Negotiated(negotiated) => &negotiated.negotiations,
+                Why::Emergency(emergency) => &emergency.broken_off,
+            };
+            for negotiation in negotiations {
+                let numbers: Vec<u32> = negotiation.rounds.iter().map(|round| round.number).collect();
+                assert_eq!(numbers, (1..).take(numbers.len()).collect::<Vec<_>>(), "{name}");
+                let decisive: Vec<_> = negotiation.rounds.iter().filter(|round| round.decisive).collect();
+                let Some(ending) = &negotiation.ending else {
+                    assert!(decisive.is_empty(), "{name}: nothing was decided");
+                    continue;
+                };
+                assert_eq!(usize::try_from(ending.rounds).unwrap(), numbers.len(), "{name}");
+                assert_eq!(decisive.len(), usize::from(ending.winner.is_some()), "{name}");
+                for round in decisive {
+                    let Act::Offer { worth: Some((value, threshold)), .. } = round.act else {
+                        panic!("{name}: {round:?}")
+                    };
+                    assert!(value > threshold, "{name}: {round:?}");
+                    assert_eq!(Some(&round.sender), ending.winner.as_ref());
+                }
+            }
+        }
+    }
+}
+
+/// One script, one style, both of them the ones that the policy names; nothing that is fetched.
+fn assert_self_contained(html: &str) {
+    let lower = html.to_lowercase();
+    let markup = lower.replace(between(&lower, "<script>", "</script>"), "");
+    let markup = markup.replace(between(&markup, "<style>", "</style>"), "");
+    // What comes from a trace has no '<' or '>' left, nor a quote in an attribute.
+    let tags = markup.split('<').skip(1).map(|rest| rest.split_once('>').unwrap().0);
+    let tags: Vec<String> = tags.map(|tag| tag.split('"').step_by(2).collect::<Vec<_>>().join("")).collect();
+    for (element, times) in [("script", 1), ("style", 1), ("meta", 5), ("title", 1), ("main", 1), ("h1", 1)] {
+        let found = tags.iter().filter(|tag| tag.split(' ').next() == Some(element));
+        assert_eq!(found.count(), times, "{element}");
+    }
+    for tag in &tags {
+        let mut words = tag.split([' ', '=']);
+        let element = words.next().unwrap();
+        assert!(
+            !["img", "iframe", "object", "embed", "link", "base", "form", "video", "audio"]
+                .contains(&element)
+        );
+        for attribute in words {
+            assert!(!["src", "srcset", "style", "action", "ping"].contains(&attribute), "{tag}");
+            assert!(!attribute.starts_with("on"), "an event handler: {tag}");
+        }
+    }
+    assert!(!lower.contains("url(") && !lower.contains("@import"), "a style that fetches");
+    let policy = between(html, "http-equiv=\"Content-Security-Policy\" content=\"", "\"");
+    assert!(policy.starts_with("default-src 'none';") && !policy.contains("unsafe"), "{policy}");
+    for (begin, end, kind) in [("<style>", "</style>", "style-src"), ("<script>", "</script>", "script-src")]
+    {
+        let digest = sha2::Sha256::digest(between(html, begin, end).as_bytes());
+        let digest = base64::engine::general_purpose::STANDARD.encode(digest);
+        assert!(policy.contains(&format!("{kind} 'sha256-{digest}'")), "{kind}: {policy}");
+    }
+    let ids = values(html, "id");
+    let known: BTreeSet<&str> = ids.iter().copied().collect();
+    assert_eq!(known.len(), ids.len(), "an id twice");
+    for link in values(html, "href") {
+        let target = link.strip_prefix('#').unwrap_or_else(|| panic!("{link} leaves the page"));
+        assert!(known.contains(target), "{link} leads nowhere");
+    }
+    for labels in ["aria-labelledby", "for"].into_iter().flat_map(|attribute| values(html, attribute)) {
+        assert!(known.contains(labels), "{labels} names nothing");
+    }
+}
+
+#[test]
+fn it_needs_nothing_else() {
+    for name in SCENARIOS {
+        assert_self_contained(&page(name).to_html());
+    }
+}
+
+/// Names that would be markup, from the scenario through the trace onto the page.
+#[test]
+fn names_from_files_stay_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let script = "</script><script>alert(1)</script>";
+    let image = "\"'><img src=x onerror=alert(1)>";
+    hostile_scenario(folder.path(), script, image);
+    let file = folder.path().join("hostile.mcap");
+    simulate(&folder.path().join("scenarios/hostile.toml"), &file);
+    let html = page_of("<b>.mcap", &fs::read(&file).unwrap()).unwrap().to_html();
+    assert_self_contained(&html);
+    assert!(!html.contains(script) && !html.contains(image) && !html.contains("<b>.mcap"));
+    // They are there, escaped: the goal, the condition, the user and the file.
+    assert!(html.contains("&lt;/script&gt;&lt;script&gt;alert(1)&lt;/script&gt;"));
+    assert!(html.contains("&quot;'&gt;&lt;img src=x onerror=alert(1)&gt;"));
+    assert!(html.contains("&lt;b&gt;.mcap"));
+}
+
+/// The mall with `script` for its name, the condition "elderly" and the pharmacy as a goal, and
+/// `image` for Bob.
+fn hostile_scenario(folder: &Path, script: &str, image: &str) {
+    let quoted = |text: &str| serde_json::to_string(text).unwrap();
+    fs::create_dir_all(folder.join("scenarios")).unwrap();
+    let hostile = |text: &str| {
+        text.replace("\"elderly\"", &quoted(script))
+            .replace("\"pharmacy\"", &quoted(&format!("{script} pharmacy")))
+            .replace("\"Bob\"", &quoted(image))
+            .replace("\"../mall/Bob\"", &quoted(&format!("../mall/{image}")))
+    };
+    let mall = hostile(&fs::read_to_string(examples().join("scenarios/mall.toml")).unwrap());
+    // Places keep their names, which are the map's.
+    let place = format!("guide = {}", quoted(&format!("{script} pharmacy")));
+    assert!(mall.contains(&place));
+    let mall = mall.replace(&place, "guide = \"pharmacy\"");
+    let mall = mall.replace("The paper's mall", script);
+    fs::write(folder.join("scenarios/hostile.toml"), mall).unwrap();
+    let copy = |from: &str, to: &str| {
+        for entry in fs::read_dir(examples().join(from)).unwrap() {
+            let entry = entry.unwrap();
+            if entry.file_type().unwrap().is_file() {
+                fs::create_dir_all(folder.join(to)).unwrap();
+                let text = hostile(&fs::read_to_string(entry.path()).unwrap());
+                fs::write(folder.join(to).join(entry.file_name()), text).unwrap();
+            }
+        }
+    };
+    copy("mall", "mall");
+    copy("mall/Alice", "mall/Alice");
+    copy("mall/Bob", &format!("mall/{image}"));
+}
+
+#[test]
+fn a_cut_trace_gives_a_page_that_says_so() {
+    let whole = trace("mall");
+    let page = page_of("cut.mcap", &whole[..whole.len() * 9 / 10]).unwrap();
+    let complete = page.facts.iter().find(|fact| fact.name == "Complete").unwrap();
+    assert!(complete.value.starts_with("no: truncated"), "{}", complete.value);
+    assert_self_contained(&page.to_html());
+}
+
+#[test]
+fn what_is_no_trace_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("text.mcap"), "no trace").unwrap();
+    let report = |trace: &str, output: &str| {
+        let mut command = selfneg();
+        command.current_dir(folder.path()).args(["report", trace, "-o", output]);
+        refusal(&mut command, folder.path())
+    };
+    assert_eq!(report("text.mcap", "page.html"), "text.mcap: not an MCAP file");
+    assert!(report("none.mcap", "page.html").starts_with("none.mcap: cannot be read: "));
+    assert!(!folder.path().join("page.html").exists());
+    let mall = traces().path().join("mall.mcap");
+    let unwritable = report(mall.to_str().unwrap(), "text.mcap/page.html");
+    assert!(unwritable.contains("cannot be written: "), "{unwritable}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Messages whose content is damaged in any way, CRCs or not, give a page or none, but never
+    /// a panic, and the page stays whole.
+    #[test]
+    fn damaged_messages_never_break_the_page(
+        seed in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), any::<u8>()), 1..200)
+    ) {
+        let bytes = trace("mall");
+        let recording = Recording::read(&bytes).unwrap();
+        let mut messages: Vec<Message> = Reader::new(&bytes).map_while(Result::ok).collect();
+        for (message, byte, value) in seed {
+            let nth = message.index(messages.len());
+            let data = &mut messages[nth].data;
+            if !data.is_empty() {
+                let at = byte.index(data.len());
+                data[at] = value;
+            }
+        }
+        let page = Page::of(Source { file: "damaged.mcap", bytes: &bytes, recording: &recording, messages: &messages });
+        assert_self_contained(&page.to_html());
+    }
+}
