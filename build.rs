@@ -18,6 +18,7 @@ const FILES: &[&str] = &[
     "selfneg/v1/event.proto",
     "selfneg/v1/header.proto",
     "selfneg/v1/record.proto",
+    "selfneg/v1/sealed.proto",
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {

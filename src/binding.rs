@@ -136,6 +136,11 @@ impl BoundRules {
         Ok(BoundUser { name: user.name.clone(), goal, end_of_goal, ranks, conditions, mentions })
     }
 
+    /// Learns a condition that only a user names; `None` beyond the engine's limit.
+    pub(crate) fn learn(&mut self, condition: &str) -> Option<Condition> {
+        index(&mut self.conditions, condition).map(Condition)
+    }
+
     /// Whether the rules activate anything by this condition.
     #[must_use]
     pub fn activates(&self, condition: &str) -> bool {
@@ -190,6 +195,17 @@ impl BoundRules {
 }
 
 impl BoundUser {
+    /// A user whose ranks, conditions and goal are by index already.
+    pub(crate) fn from_parts(
+        name: String,
+        goal: String,
+        ranks: Vec<Rank>,
+        conditions: Vec<Condition>,
+        mentions: Vec<u8>,
+    ) -> Self {
+        Self { name, goal, end_of_goal: false, ranks, conditions, mentions }
+    }
+
     /// The true conditions in their order of disclosure, "end of goal" left out.
     #[must_use]
     pub fn conditions(&self) -> &[Condition] {

@@ -44,12 +44,17 @@
 //! | [`run`] | the mission drives the simulated robot |
 //! | [`trace`] | a run as evidence: written, read back, replayed |
 //! | [`report`] | a trace as a page for people |
+//! | [`mod@case`] | a trace's decisions, each with what it takes to make it again |
+//! | [`seal`] | signatures, encryption and commitments of traces |
+//! | [`audit`] | whether a trace is whole and unchanged, and the robot kept its rules |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
 //! | [`command`] | the command line |
 #![forbid(unsafe_code)]
 
+pub mod audit;
 pub mod binding;
+pub mod case;
 pub mod command;
 pub mod demo;
 pub mod input;
@@ -64,6 +69,7 @@ pub mod replicate;
 pub mod report;
 pub mod run;
 pub mod scenario;
+pub mod seal;
 pub mod story;
 pub mod trace;
 pub mod transcript;

@@ -32,6 +32,7 @@ fn main() -> ExitCode {
             match report.status {
                 Status::Passed => ExitCode::SUCCESS,
                 Status::Failed => ExitCode::from(1),
+                Status::Unusable => ExitCode::from(2),
             }
         }
         Err(error) => {

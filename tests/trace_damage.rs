@@ -24,7 +24,7 @@ use selfneg_sim::{Building, Cell, Floor, OccupancyGrid, Point};
 fn scripted() -> &'static [u8] {
     static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
     BYTES.get_or_init(|| {
-        let mut writer = TraceWriter::new(Vec::new()).unwrap();
+        let mut writer = TraceWriter::plain(Vec::new()).unwrap();
         run::play(&mut writer).unwrap();
         writer.into_inner().unwrap()
     })
@@ -104,7 +104,7 @@ fn small() -> Vec<u8> {
     let building = Building::new("room".into(), vec![floor], Vec::new()).unwrap();
     let (rules, specification) = (demo::rules().unwrap(), run::specification());
     let options = Options::default();
-    let mut writer = TraceWriter::new(Vec::new()).unwrap();
+    let mut writer = TraceWriter::plain(Vec::new()).unwrap();
     let setup = Setup {
         name: "small",
         building: &building,

@@ -23,7 +23,7 @@ use selfneg_core::{Options, TieRule};
 use selfneg_sim::Building;
 
 fn scripted() -> (Vec<u8>, Vec<Output>) {
-    let mut writer = TraceWriter::new(Vec::new()).unwrap();
+    let mut writer = TraceWriter::plain(Vec::new()).unwrap();
     let outputs = run::play(&mut writer).unwrap();
     (writer.into_inner().unwrap(), outputs)
 }
@@ -119,7 +119,7 @@ fn a_killed_run_leaves_every_decision_told() {
         }
     }
     let disk = Shared::default();
-    let writer = TraceWriter::new(std::io::BufWriter::new(disk.clone()).into_inner().unwrap()).unwrap();
+    let writer = TraceWriter::plain(std::io::BufWriter::new(disk.clone()).into_inner().unwrap()).unwrap();
     let mut killed = Killed { writer, disk, on_disk: Vec::new() };
     let outputs = run::play(&mut killed).unwrap();
     assert!(!killed.on_disk.is_empty());
@@ -215,7 +215,7 @@ proptest! {
         let (rules, specification) = (demo::rules().unwrap(), run::specification());
         let options = Options { tie, willingness, ..Options::default() };
         let building = building();
-        let mut writer = TraceWriter::new(Vec::new()).unwrap();
+        let mut writer = TraceWriter::plain(Vec::new()).unwrap();
         writer.begin(&Setup {
             name: "random", building: &building, rules: &rules, specification: &specification,
             options, policy: None, participants: &run::participants().unwrap(), places: &[],

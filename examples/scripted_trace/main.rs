@@ -11,7 +11,7 @@ use selfneg::trace::TraceWriter;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args_os().nth(1).ok_or("expected the file to write")?;
-    let mut writer = TraceWriter::new(BufWriter::new(File::create(path)?))?;
+    let mut writer = TraceWriter::plain(BufWriter::new(File::create(path)?))?;
     run::play(&mut writer)?;
     Ok(())
 }

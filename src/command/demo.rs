@@ -7,17 +7,19 @@ use clap::Args;
 use selfneg_core::Options;
 
 use super::simulate::{play, told};
-use super::{CommandError, Report, Status, json, report, write_whole};
+use super::{CommandError, Report, Status, json, key_files, report, write_whole};
 use crate::binding::{BoundRules, GoalChoice};
 use crate::demo;
 use crate::precedence::{Policy, decide};
 use crate::record::DecisionRecord;
+use crate::seal::{Privacy, Seal};
 use crate::story;
 
 /// The paper's mall: Bob interrupts while the robot serves Alice. Needs no input
 #[derive(Debug, Args)]
 pub(super) struct Demo {
-    /// Folder to write decision.json, trace.mcap, run.svg and report.html into; made if need be
+    /// Folder to write decision.json, trace.mcap, run.svg and report.html into, with the keys
+    /// that sign and seal the trace; made if need be
     #[arg(long, value_name = "DIR", default_value = "selfneg-demo")]
     out: PathBuf,
     /// Print the decision as one JSON document instead of the story
@@ -37,7 +39,13 @@ impl Demo {
         let [decided, recorded, drawn, reported] =
             ["decision.json", "trace.mcap", "run.svg", "report.html"].map(|name| self.out.join(name));
         write_whole(&decided, &document)?;
-        let ran = play(&scenario, false, Some(&recorded))?;
+        let (signer, auditor) = key_files::of_folder(&self.out)?;
+        let seal = Seal {
+            privacy: Privacy::Sealed(vec![auditor]),
+            signer: Some(signer),
+            random: Box::new(key_files::random),
+        };
+        let ran = play(&scenario, false, Some((&recorded, seal)))?;
         write_whole(&drawn, &ran.sketch.to_svg())?;
         report::write(&recorded, &reported)?;
         if self.json {
@@ -48,10 +56,13 @@ impl Demo {
         output.push_str(&story::tell(&decision, &users, &rules));
         let _ = writeln!(
             output,
-            "\nThe decision is in {}, the run is recorded in {} and drawn in {}; for people: {}",
+            "\nThe decision is in {}, the run is recorded in {} and drawn in {}\nThe trace is signed with {} and \
+             sealed to {}\nFor people: {}",
             decided.display(),
             recorded.display(),
             drawn.display(),
+            self.out.join("robot.key").display(),
+            self.out.join("auditor.pub").display(),
             reported.display()
         );
         Ok(Report { output, warnings: Vec::new(), status: Status::Passed })

@@ -3,21 +3,28 @@
 //! A command is given its arguments and yields a [`Report`]: what to print, and whether
 //! everything was right. Printing and exit codes are left to the program.
 
+mod audit;
 mod demo;
 mod durable;
+mod erase;
 mod graph;
+mod key_files;
+mod keygen;
 mod lint;
 mod negotiate;
 mod optimum;
 mod options;
 mod policies;
 mod present;
+mod private_file;
 mod progress;
 mod rank_range;
 mod regret;
 mod replicate;
 mod report;
 mod simulate;
+mod trace_file;
+mod unseal;
 mod verify;
 
 use std::fs;
@@ -36,7 +43,8 @@ use crate::precedence::PrecedenceError;
 use crate::regret::RegretError;
 use crate::replicate::ReplicateError;
 use crate::scenario::ScenarioError;
-use crate::trace::TraceError;
+use crate::seal::KeyError;
+use crate::trace::{EraseError, UnsealError};
 use crate::verify::VerifyError;
 
 /// Who gets the robot? Ethical decisions between interrupting users.
@@ -59,6 +67,10 @@ enum Command {
     Negotiate(negotiate::Negotiate),
     Simulate(simulate::Simulate),
     Report(report::Report),
+    Keygen(keygen::Keygen),
+    Audit(audit::Audit),
+    Unseal(unseal::Unseal),
+    Erase(erase::Erase),
     Replicate(replicate::Replicate),
     Optimum(optimum::Optimum),
     Regret(regret::Regret),
@@ -87,6 +99,8 @@ pub enum Status {
     Passed,
     /// A check failed.
     Failed,
+    /// Some of the input cannot be used; what can be was done.
+    Unusable,
 }
 
 /// Why a command could not do its work.
@@ -129,6 +143,30 @@ pub enum CommandError {
     /// Somebody who watches a run cannot go on.
     #[error("the run cannot be recorded: {0}")]
     Recording(io::Error),
+    /// A file holds no key.
+    #[error("{}: {source}", file.display())]
+    Key {
+        /// The file.
+        file: PathBuf,
+        /// Why not.
+        source: KeyError,
+    },
+    /// A trace cannot be unsealed.
+    #[error("{}: {source}", file.display())]
+    Unsealable {
+        /// The trace.
+        file: PathBuf,
+        /// Why not.
+        source: UnsealError,
+    },
+    /// Nothing can be erased from a trace.
+    #[error("{}: {source}", file.display())]
+    Unerasable {
+        /// The trace.
+        file: PathBuf,
+        /// Why not.
+        source: EraseError,
+    },
     /// The arguments do not fit together.
     #[error("{0}")]
     Arguments(String),
@@ -172,6 +210,10 @@ impl Program {
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Simulate(simulate) => simulate.run(),
             Command::Report(report) => report.run(),
+            Command::Keygen(keygen) => keygen.run(),
+            Command::Audit(audit) => audit.run(),
+            Command::Unseal(unseal) => unseal.run(),
+            Command::Erase(erase) => erase.run(),
             Command::Replicate(replicate) => replicate.run(),
             Command::Optimum(optimum) => optimum.run(),
             Command::Regret(regret) => regret.run(),

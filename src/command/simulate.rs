@@ -12,10 +12,12 @@ use selfneg_sim::World;
 use serde::Serialize;
 
 use super::durable::Durable;
+use super::key_files::{auditor_public_keys, random, robot_key};
 use super::{CommandError, Report, Status, json, progress, write_whole};
 use crate::mission::{Closing, Refusal, Staff};
 use crate::run::{Ended, HowItEnded, Outcome, Sketch, Storybook, Told, Watcher, clock, run};
 use crate::scenario::Scenario;
+use crate::seal::{Privacy, Seal};
 use crate::trace::TraceWriter;
 
 /// Run a scenario in the simulated building, and tell its story
@@ -28,6 +30,15 @@ pub(super) struct Simulate {
     /// was decided is in it even if the run is killed
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
+    /// Sign the trace with this key (keygen makes one)
+    #[arg(long, value_name = "ROBOT_KEY", requires = "trace")]
+    sign: Option<PathBuf>,
+    /// Encrypt what is personal in the trace to this auditor; may be given several times
+    #[arg(long, value_name = "AUDITOR_PUB", requires = "trace", conflicts_with = "plaintext")]
+    seal: Vec<PathBuf>,
+    /// Write what is personal into the trace for everybody to read: for fictional people
+    #[arg(long, requires = "trace")]
+    plaintext: bool,
     /// Take as long as it would really take
     #[arg(long)]
     realtime: bool,
@@ -50,7 +61,19 @@ struct Document<'a> {
 impl Simulate {
     pub(super) fn run(&self) -> Result<Report, CommandError> {
         let scenario = Scenario::open(&self.scenario)?;
-        let ran = play(&scenario, self.realtime, self.trace.as_deref())?;
+        let record = match &self.trace {
+            Some(file) => Some((file.as_path(), self.seal()?)),
+            None => None,
+        };
+        let mut warnings = Vec::new();
+        if let Some((file, Seal { privacy: Privacy::LeftOut, .. })) = &record {
+            warnings.push(format!(
+                "{}: what is personal is left out, and so nobody can check the decisions: --seal AUDITOR_PUB \
+                 encrypts it, --plaintext leaves it in the open",
+                file.display()
+            ));
+        }
+        let ran = play(&scenario, self.realtime, record)?;
         if let Some(file) = &self.picture {
             write_whole(file, &ran.sketch.to_svg())?;
         }
@@ -63,7 +86,18 @@ impl Simulate {
             }
             false => told(&scenario, &ran),
         };
-        Ok(Report { output, warnings: Vec::new(), status })
+        Ok(Report { output, warnings, status })
+    }
+
+    /// The trace's seal, as the options say.
+    fn seal(&self) -> Result<Seal, CommandError> {
+        let privacy = match (self.plaintext, self.seal.as_slice()) {
+            (true, _) => Privacy::Plain,
+            (false, []) => Privacy::LeftOut,
+            (false, files) => Privacy::Sealed(auditor_public_keys(files)?),
+        };
+        let signer = self.sign.as_deref().map(robot_key).transpose()?;
+        Ok(Seal { privacy, signer, random: Box::new(random) })
     }
 }
 
@@ -74,16 +108,23 @@ pub(super) struct Ran {
     pub(super) sketch: Sketch,
 }
 
-/// Runs a scenario with a progress bar, and records it into `trace`.
-pub(super) fn play(scenario: &Scenario, realtime: bool, trace: Option<&Path>) -> Result<Ran, CommandError> {
+/// Runs a scenario with a progress bar, and records it into a file with a seal.
+pub(super) fn play(
+    scenario: &Scenario,
+    realtime: bool,
+    record: Option<(&Path, Seal)>,
+) -> Result<Ran, CommandError> {
+    let trace = record.as_ref().map(|(file, _)| *file);
     let (mut story, mut sketch) = (Storybook::default(), Sketch::default());
     let mut bar = Bar::new(scenario.until, realtime);
     let unwritable = |file: &Path| {
         let file = file.to_owned();
         move |source| CommandError::Unwritable { file, source }
     };
-    let mut writer = match trace {
-        Some(file) => Some(TraceWriter::new(Durable::create(file)?).map_err(unwritable(file))?),
+    let mut writer = match record {
+        Some((file, seal)) => {
+            Some(TraceWriter::create(Durable::create(file)?, seal).map_err(unwritable(file))?)
+        }
         None => None,
     };
     let mut watchers: Vec<&mut dyn Watcher> = vec![&mut story, &mut sketch, &mut bar];

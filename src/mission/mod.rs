@@ -97,6 +97,7 @@ mod machine;
 mod memory;
 mod mission_controller;
 mod negotiation;
+mod recollection;
 mod record;
 mod request_queue;
 mod settling;
@@ -110,6 +111,7 @@ pub use command::{Closing, Command, Output, Refusal, Staff, Waiting};
 pub use event::{AskId, CategoryId, Event, Evidence, ExecutionId, GoalId, Place, UserId};
 pub use lifecycle::{IllegalTransition, Lifecycle, Transition};
 pub use memory::NAME_BYTES;
+pub(crate) use recollection::{Recollection, Snapshot};
 pub use record::{ActiveProfile, Component, Disclosed, Dropped, GoalEnd, Record, Round, Served, Unusable};
 pub use specification::{
     Category, ContextImplication, Goal, Inference, Limits, MissionRules, Proof, Specification,

@@ -310,6 +310,12 @@ impl MissionRules {
         self.options
     }
 
+    /// The policy asked for, if one was.
+    #[must_use]
+    pub fn policy(&self) -> Option<Policy> {
+        self.policy
+    }
+
     /// The robot's rules, with their names.
     #[must_use]
     pub fn bound(&self) -> &BoundRules {
@@ -340,10 +346,14 @@ impl MissionRules {
 
     /// The goal's implication: the one of its `in_context`-th context, or the general one.
     pub(super) fn implication(&self, goal: GoalId, in_context: Option<usize>) -> Implication<'_> {
+        Implication::new(self.mentions(goal, in_context))
+    }
+
+    /// How often that implication names each disposition.
+    pub(super) fn mentions(&self, goal: GoalId, in_context: Option<usize>) -> &[u8] {
         let goal = self.goals.get(usize::from(goal.0));
         let special = in_context.and_then(|nth| goal?.in_context.get(nth));
-        let mentions = special.or(goal.map(|goal| &goal.general)).map_or(&[][..], Vec::as_slice);
-        Implication::new(mentions)
+        special.or(goal.map(|goal| &goal.general)).map_or(&[][..], Vec::as_slice)
     }
 
     /// The conditions that the inference rules infer, in their order.

@@ -4,7 +4,7 @@
 pub const FORMAT_MAJOR: u32 = 1;
 
 /// The minor version: a reader of the same major version can, and ignores what it does not know.
-pub const FORMAT_MINOR: u32 = 0;
+pub const FORMAT_MINOR: u32 = 1;
 
 /// The name of the MCAP metadata record, first in the file, that says the version, so that it
 /// is known before any message is.
@@ -15,3 +15,11 @@ pub const FORMAT_KEY: &str = "version";
 
 /// This program, as traces name it.
 pub const PROGRAM: &str = concat!("selfneg ", env!("CARGO_PKG_VERSION"));
+
+/// The version as traces say it.
+pub(super) fn version() -> String {
+    format!("{FORMAT_MAJOR}.{FORMAT_MINOR}")
+}
+
+/// The name of the metadata record of a clear copy that says what it is a copy of.
+pub const UNSEALED_RECORD: &str = "selfneg.unsealed";

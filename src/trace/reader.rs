@@ -16,11 +16,15 @@ use mcap::records::{Record, op};
 
 use super::error::TraceError;
 use super::format::{FORMAT_KEY, FORMAT_MAJOR, FORMAT_RECORD};
+use crate::seal::chain::{Digest, channel_digest};
 
 /// Most bytes of a decompressed chunk. Ours have about one megabyte.
 const MAX_CHUNK_BYTES: u64 = 256 << 20;
 
 const OPCODE_AND_LENGTH: usize = 9;
+
+/// How messages and schemas are encoded.
+pub(super) const PROTOBUF: &str = "protobuf";
 
 /// A message of a trace.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,6 +43,69 @@ pub struct Message {
     pub data: Vec<u8>,
     /// Where the record that holds it, mostly a chunk, begins in the file.
     pub at: u64,
+    /// All that the file says of its topic and type.
+    pub channel: Arc<Channel>,
+    /// Whether it comes from within a segment; `sequence` is then that of the message in the
+    /// open that it was written after.
+    pub is_inner: bool,
+}
+
+/// A topic with its schema, as the file describes it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Channel {
+    /// The topic.
+    pub topic: Arc<str>,
+    /// How messages are encoded: `protobuf`.
+    pub encoding: String,
+    /// What else is said of it: nothing in our traces.
+    pub metadata: BTreeMap<String, String>,
+    /// The schema's name; empty if there is none.
+    pub schema: Arc<str>,
+    /// How the schema is written: `protobuf`.
+    pub schema_encoding: String,
+    /// The schema.
+    pub schema_data: Arc<[u8]>,
+    /// A digest of all this.
+    pub digest: Digest,
+}
+
+impl Channel {
+    /// A channel of messages and a schema in protobuf.
+    pub(super) fn protobuf(topic: &str, schema: &str, schema_data: Vec<u8>) -> Self {
+        let metadata = BTreeMap::new();
+        let digest = channel_digest(topic, PROTOBUF, &metadata, (schema, PROTOBUF, &schema_data));
+        Self {
+            topic: topic.into(),
+            encoding: PROTOBUF.to_owned(),
+            metadata,
+            schema: schema.into(),
+            schema_encoding: PROTOBUF.to_owned(),
+            schema_data: schema_data.into(),
+            digest,
+        }
+    }
+}
+
+/// A metadata record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// Its name.
+    pub name: String,
+    /// What it says.
+    pub entries: BTreeMap<String, String>,
+    /// Where it begins in the file.
+    pub at: u64,
+    /// How many messages are before it.
+    pub messages: u64,
+}
+
+/// Something in a file that is neither a message nor a metadata record nor derived from them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Added {
+    /// Where it begins in the file.
+    pub at: u64,
+    /// What it is.
+    pub what: String,
 }
 
 /// Reads a whole file in memory. After the first error it yields nothing more.
@@ -48,10 +115,22 @@ pub struct Reader<'a> {
     /// Where the next record begins.
     at: usize,
     section: Section,
-    schemas: BTreeMap<u16, Arc<str>>,
-    channels: BTreeMap<u16, (Arc<str>, Arc<str>)>,
+    /// Where the zeros begin that end the file, as a loss of power may leave it.
+    zeros: usize,
+    schemas: BTreeMap<u16, SchemaText>,
+    channels: BTreeMap<u16, Arc<Channel>>,
     ready: VecDeque<Message>,
+    found: u64,
     format: Option<String>,
+    notes: Vec<Note>,
+    added: Vec<Added>,
+}
+
+#[derive(Clone, Debug)]
+struct SchemaText {
+    name: Arc<str>,
+    encoding: String,
+    data: Arc<[u8]>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,16 +145,33 @@ enum Section {
 impl<'a> Reader<'a> {
     /// A reader of a file's bytes.
     #[must_use]
-    pub const fn new(bytes: &'a [u8]) -> Self {
+    pub fn new(bytes: &'a [u8]) -> Self {
+        let zeros = bytes.iter().rposition(|byte| *byte != 0).map_or(0, |last| last.saturating_add(1));
         Self {
             bytes,
             at: 0,
             section: Section::Start,
+            zeros,
             schemas: BTreeMap::new(),
             channels: BTreeMap::new(),
             ready: VecDeque::new(),
+            found: 0,
             format: None,
+            notes: Vec::new(),
+            added: Vec::new(),
         }
+    }
+
+    /// The metadata records read so far, in the file's order.
+    #[must_use]
+    pub fn notes(&self) -> &[Note] {
+        &self.notes
+    }
+
+    /// What was found so far that no trace of ours holds.
+    #[must_use]
+    pub fn added(&self) -> &[Added] {
+        &self.added
     }
 
     /// The trace format's version, once the record that says it was read.
@@ -93,11 +189,17 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let at = self.at;
-            let (opcode, body) = self.record()?;
-            match self.section {
-                Section::Summary(begin) => self.summary(opcode, body, begin, at)?,
-                _ => self.data(opcode, body, at)?,
+            if at >= self.zeros {
+                return Err(self.truncated());
             }
+            let (opcode, body) = self.record()?;
+            let read = match self.section {
+                Section::Summary(begin) => self.summary(opcode, body, begin, at),
+                _ => self.data(opcode, body, at),
+            };
+            // A record of which the disk never got the rest.
+            let is_cut = self.at > self.zeros && self.section != Section::Done;
+            read.map_err(|error| if is_cut { TraceError::Truncated { at: wide(at) } } else { error })?;
         }
         Ok(())
     }
@@ -141,15 +243,27 @@ impl<'a> Reader<'a> {
             }
             // A footer without an end of the data is no file that a writer finished.
             op::FOOTER => Err(malformed(at, "a footer before the end of the data")),
-            // Header, indices, attachments, and what is not known: nothing to yield. They are
-            // not parsed; mcap's parser of attachments panics on short ones.
-            _ => Ok(()),
+            op::HEADER if at == mcap::MAGIC.len() => Ok(()),
+            op::MESSAGE_INDEX => Ok(()),
+            // Attachments, and what is not known: nothing to yield. They are not parsed;
+            // mcap's parser of attachments panics on short ones.
+            _ => {
+                self.add(opcode, at);
+                Ok(())
+            }
         }
     }
 
     fn summary(&mut self, opcode: u8, body: &[u8], begin: usize, at: usize) -> Result<(), TraceError> {
-        if opcode != op::FOOTER {
-            return Ok(());
+        match opcode {
+            op::FOOTER => {}
+            op::CHUNK_INDEX | op::STATISTICS | op::METADATA_INDEX | op::SUMMARY_OFFSET => return Ok(()),
+            // Viewers that seek take them from here.
+            op::SCHEMA | op::CHANNEL => return self.repeated(opcode, body, at),
+            _ => {
+                self.add(opcode, at);
+                return Ok(());
+            }
         }
         if let Record::Footer(footer) = parse(opcode, body, at)? {
             // The sum covers the footer too, but for itself.
@@ -169,6 +283,19 @@ impl<'a> Reader<'a> {
 
     fn metadata(&mut self, body: &[u8], at: usize) -> Result<(), TraceError> {
         let Record::Metadata(metadata) = parse(op::METADATA, body, at)? else { return Ok(()) };
+        let string = |text: &String| text.len().saturating_add(4);
+        let entries = metadata.metadata.iter().map(|(key, value)| string(key).saturating_add(string(value)));
+        if body.len() != entries.sum::<usize>().saturating_add(string(&metadata.name)).saturating_add(4) {
+            self.added
+                .push(Added { at: wide(at), what: "more than the metadata in their record".to_owned() });
+        }
+        let note = Note {
+            name: metadata.name.clone(),
+            entries: metadata.metadata.clone(),
+            at: wide(at),
+            messages: self.found,
+        };
+        self.notes.push(note);
         if metadata.name != FORMAT_RECORD {
             return Ok(());
         }
@@ -209,7 +336,7 @@ impl<'a> Reader<'a> {
                 split_record(rest).ok_or_else(|| malformed(at, "a record leaves its chunk"))?;
             match opcode {
                 op::SCHEMA | op::CHANNEL | op::MESSAGE => self.content(opcode, body, at)?,
-                _ => {}
+                _ => self.add(opcode, at),
             }
             let length = OPCODE_AND_LENGTH.saturating_add(body.len());
             rest = rest.get(length..).unwrap_or_default();
@@ -219,34 +346,81 @@ impl<'a> Reader<'a> {
 
     fn content(&mut self, opcode: u8, body: &[u8], at: usize) -> Result<(), TraceError> {
         match parse(opcode, body, at)? {
-            Record::Schema { header, .. } => {
-                self.schemas.insert(header.id, header.name.into());
+            Record::Schema { header, data } => {
+                let text = SchemaText {
+                    name: header.name.into(),
+                    encoding: header.encoding,
+                    data: data.as_ref().into(),
+                };
+                self.schemas.insert(header.id, text);
             }
             Record::Channel(channel) => {
-                let schema = match (channel.schema_id, self.schemas.get(&channel.schema_id)) {
-                    (_, Some(schema)) => Arc::clone(schema),
-                    (0, None) => "".into(),
-                    (_, None) => return Err(malformed(at, "a channel without its schema")),
-                };
-                self.channels.insert(channel.id, (channel.topic.into(), schema));
+                let described = self.channel(&channel, at)?;
+                self.channels.insert(channel.id, described.into());
             }
             Record::Message { header, data } => {
                 let channel = self.channels.get(&header.channel_id);
-                let (topic, schema) =
-                    channel.cloned().ok_or_else(|| malformed(at, "a message without its channel"))?;
+                let channel = channel.ok_or_else(|| malformed(at, "a message without its channel"))?;
                 self.ready.push_back(Message {
-                    topic,
-                    schema,
+                    topic: Arc::clone(&channel.topic),
+                    schema: Arc::clone(&channel.schema),
                     sequence: header.sequence,
                     log_time: header.log_time,
                     publish_time: header.publish_time,
                     data: data.into_owned(),
                     at: wide(at),
+                    channel: Arc::clone(channel),
+                    is_inner: false,
                 });
+                self.found = self.found.saturating_add(1);
             }
             _ => {}
         }
         Ok(())
+    }
+
+    fn channel(&self, channel: &mcap::records::Channel, at: usize) -> Result<Channel, TraceError> {
+        let none = SchemaText { name: "".into(), encoding: String::new(), data: Arc::new([]) };
+        let schema = match (channel.schema_id, self.schemas.get(&channel.schema_id)) {
+            (0, _) => none,
+            (_, Some(schema)) => schema.clone(),
+            (_, None) => return Err(malformed(at, "a channel without its schema")),
+        };
+        let described = (&*schema.name, schema.encoding.as_str(), &*schema.data);
+        let digest = channel_digest(&channel.topic, &channel.message_encoding, &channel.metadata, described);
+        Ok(Channel {
+            topic: channel.topic.as_str().into(),
+            encoding: channel.message_encoding.clone(),
+            metadata: channel.metadata.clone(),
+            schema: schema.name,
+            schema_encoding: schema.encoding,
+            schema_data: schema.data,
+            digest,
+        })
+    }
+
+    /// What the summary says again of schemas and channels is what the data says.
+    fn repeated(&self, opcode: u8, body: &[u8], at: usize) -> Result<(), TraceError> {
+        let same = match parse(opcode, body, at)? {
+            Record::Schema { header, data } => self.schemas.get(&header.id).is_some_and(|schema| {
+                *schema.name == *header.name && schema.encoding == header.encoding && *schema.data == *data
+            }),
+            Record::Channel(channel) => {
+                let again = self.channel(&channel, at)?;
+                self.channels.get(&channel.id).is_some_and(|known| known.digest == again.digest)
+            }
+            _ => true,
+        };
+        if same { Ok(()) } else { Err(malformed(at, "the summary's channels are not those of the data")) }
+    }
+
+    fn add(&mut self, opcode: u8, at: usize) {
+        let what = match opcode {
+            op::HEADER => "a second header".to_owned(),
+            op::ATTACHMENT => "an attachment".to_owned(),
+            opcode => format!("a record of kind {opcode:#04x}"),
+        };
+        self.added.push(Added { at: wide(at), what });
     }
 }
 

@@ -4,9 +4,10 @@ use std::time::Duration;
 
 use super::encode::Open;
 use super::error::TraceError;
-use super::format::FORMAT_MAJOR;
-use super::reader::{Message, Reader};
+use super::reader::Message;
+use super::scan::Scan;
 use super::schema::{Schema, evidence, personal};
+use super::setup;
 
 /// One event or reply, with its place and time.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,29 +56,34 @@ pub struct Recording {
     pub end: Option<evidence::End>,
     /// How many messages were read, those for viewers included.
     pub messages: u64,
+    /// Of the entries before this index everything personal was written that there ever was.
+    pub personal_until: u64,
+    /// What the robot committed to, in a sealed trace.
+    pub commitments: Vec<evidence::Commitment>,
+    /// What opens the commitments, as far as it is there.
+    pub openings: Vec<personal::Opening>,
     /// What is wrong behind the last entry; of a complete trace nothing.
     pub damage: Option<TraceError>,
 }
 
 impl Recording {
-    /// Reads a whole file in memory. Of a damaged one everything before the damage is read.
+    /// Reads a whole file in memory, without a key. Of a damaged one everything before the
+    /// damage is read.
     ///
     /// # Errors
     /// [`TraceError`] if not even the header can be read, or the format is a newer one.
     pub fn read(bytes: &[u8]) -> Result<Self, TraceError> {
-        let mut reader = Reader::new(bytes);
-        let first = reader.next().ok_or(TraceError::NotATrace("it has no message"))??;
-        if reader.format().is_none() {
-            return Err(TraceError::NotATrace("it does not say its format's version"));
-        }
-        if *first.schema != *Schema::Header.name() {
-            return Err(TraceError::NotATrace("its first message is not the header"));
-        }
-        let header: evidence::Header = decoded(&first)?;
-        if header.format_major > FORMAT_MAJOR {
-            let found = format!("{}.{}", header.format_major, header.format_minor);
-            return Err(TraceError::NewerMajor { found });
-        }
+        let scan = Scan::of(bytes);
+        Self::of(&scan, scan.messages.iter())
+    }
+
+    /// Makes a recording of a file's messages, and of messages of its segments among them,
+    /// each after the one in the open that it was written after.
+    pub(super) fn of<'m>(
+        scan: &'m Scan,
+        messages: impl Iterator<Item = &'m Message>,
+    ) -> Result<Self, TraceError> {
+        let header = scan.header()?;
         let mut recording = Self {
             header,
             rules: None,
@@ -85,22 +91,32 @@ impl Recording {
             entries: Vec::new(),
             end: None,
             messages: 0,
+            personal_until: 0,
+            commitments: Vec::new(),
+            openings: Vec::new(),
             damage: None,
         };
-        recording.damage = recording.number(&first).err();
-        for message in reader.by_ref() {
+        for message in messages {
+            recording.damage = recording.number(message).and_then(|()| recording.take(message)).err();
             if recording.damage.is_some() {
                 break;
             }
-            let taken = message.and_then(|message| {
-                recording.number(&message)?;
-                recording.take(&message)
-            });
-            recording.damage = taken.err();
+        }
+        if recording.damage.is_none() {
+            recording.damage.clone_from(&scan.damage);
         }
         if recording.damage.is_none() && recording.end.is_none() {
-            let at = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
-            recording.damage = Some(TraceError::Truncated { at });
+            recording.damage = Some(TraceError::Truncated { at: scan.length });
+        }
+        let entries = count(recording.entries.len());
+        match (&recording.damage, recording.header.privacy()) {
+            (None, _) => recording.personal_until = entries,
+            // Between the halves of the last one.
+            (Some(_), evidence::Privacy::Plain | evidence::Privacy::Unspecified) => {
+                recording.personal_until = entries.saturating_sub(1);
+            }
+            // As the last segments say.
+            (Some(_), _) => {}
         }
         Ok(recording)
     }
@@ -114,18 +130,17 @@ impl Recording {
     /// How many decisions are recorded: of negotiations, and emergencies found certain.
     #[must_use]
     pub fn decisions(&self) -> u64 {
-        use evidence::record::Record::{Decided, EmergencyDecided};
-        let is_decision = |entry: &&Entry| {
-            matches!(
-                &entry.step,
-                Step::Reply { open: Open::Record(record), .. }
-                    if matches!(record.record, Some(Decided(_) | EmergencyDecided(_)))
-            )
+        let decided = |entry: &&Entry| match &entry.step {
+            Step::Reply { open: Open::Record(record), .. } => is_decision(record),
+            _ => false,
         };
-        count(self.entries.iter().filter(is_decision).count())
+        count(self.entries.iter().filter(decided).count())
     }
 
     fn number(&mut self, message: &Message) -> Result<(), TraceError> {
+        if message.is_inner {
+            return Ok(());
+        }
         let found = u64::from(message.sequence);
         if found != self.messages {
             return Err(TraceError::Gap { expected: self.messages, found });
@@ -138,8 +153,9 @@ impl Recording {
         if self.end.is_some() {
             return Err(bad(message, "it comes after the end"));
         }
-        let known = Schema::ALL.into_iter().find(|schema| *schema.name() == *message.schema);
-        match known {
+        match Schema::of_name(&message.schema) {
+            // The first one was read before.
+            Some(Schema::Header) if message.sequence == 0 => {}
             Some(Schema::Header) => return Err(bad(message, "a second header")),
             Some(Schema::End) => {
                 let end: evidence::End = decoded(message)?;
@@ -158,7 +174,23 @@ impl Recording {
                 let open: evidence::Command = decoded(message)?;
                 self.enter_reply(message, open.index, Open::Command(open))?;
             }
-            Some(Schema::Rules) => self.rules = Some(decoded(message)?),
+            Some(Schema::Rules) => {
+                if self.rules.is_some() {
+                    return Err(bad(message, "a second set of rules"));
+                }
+                let rules: personal::Rules = decoded(message)?;
+                let named = setup::name_header(&mut self.header, &rules, &message.data);
+                named.map_err(|what| bad(message, what))?;
+                self.rules = Some(rules);
+            }
+            Some(Schema::Sealed) => {
+                let sealed: evidence::Sealed = decoded(message)?;
+                if sealed.last {
+                    self.personal_until = count(self.entries.len());
+                }
+            }
+            Some(Schema::Commitment) => self.commitments.push(decoded(message)?),
+            Some(Schema::Opening) => self.openings.push(decoded(message)?),
             Some(Schema::Participant) => self.participants.push(decoded(message)?),
             Some(Schema::Input) => {
                 let input: personal::Input = decoded(message)?;
@@ -218,11 +250,17 @@ impl Recording {
     }
 }
 
+/// Whether the robot decided here: in a negotiation, or for an emergency.
+pub(crate) fn is_decision(record: &evidence::Record) -> bool {
+    use evidence::record::Record::{Decided, EmergencyDecided};
+    matches!(record.record, Some(Decided(_) | EmergencyDecided(_)))
+}
+
 fn count(number: usize) -> u64 {
     u64::try_from(number).unwrap_or(u64::MAX)
 }
 
-fn bad(message: &Message, what: &str) -> TraceError {
+pub(super) fn bad(message: &Message, what: &str) -> TraceError {
     TraceError::BadMessage {
         sequence: message.sequence,
         topic: message.topic.to_string(),
@@ -230,6 +268,6 @@ fn bad(message: &Message, what: &str) -> TraceError {
     }
 }
 
-fn decoded<M: prost::Message + Default>(message: &Message) -> Result<M, TraceError> {
+pub(super) fn decoded<M: prost::Message + Default>(message: &Message) -> Result<M, TraceError> {
     M::decode(message.data.as_slice()).map_err(|error| bad(message, &error.to_string()))
 }

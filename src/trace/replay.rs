@@ -94,7 +94,7 @@ impl Recording {
                 break;
             };
             let event = match decode_event(open, personal.as_ref()) {
-                // Cut between the halves of the last event.
+                // Cut between the halves of an event.
                 Err(ReplayError::NoPersonal { .. }) if self.is_cut_after(entry) => break,
                 event => event?,
             };
@@ -108,7 +108,7 @@ impl Recording {
 
     /// Whether what belongs to this entry may be lost.
     fn is_cut_after(&self, entry: &Entry) -> bool {
-        self.damage.is_some() && self.entries.last().is_some_and(|last| last.index == entry.index)
+        self.damage.is_some() && entry.index >= self.personal_until
     }
 
     fn compare<'r>(
@@ -151,7 +151,10 @@ fn difference(index: u64, replayed: Option<Output>, recorded: Option<&Entry>) ->
 }
 
 /// The event whose halves these are.
-fn decode_event(open: &evidence::Event, personal: Option<&personal::Input>) -> Result<Event, ReplayError> {
+pub(crate) fn decode_event(
+    open: &evidence::Event,
+    personal: Option<&personal::Input>,
+) -> Result<Event, ReplayError> {
     use event::Event as Open;
     let recorded = open.event.as_ref().ok_or(ReplayError::Unknown("event"))?;
     let missing = || ReplayError::NoPersonal { what: format!("event {}", open.index) };

@@ -44,15 +44,20 @@ fn update(entities: Vec<SceneEntity>) -> SceneUpdate {
     SceneUpdate { deletions: Vec::new(), entities }
 }
 
-/// Walls and named places of all floors.
+/// Walls of all floors.
 pub(super) fn building(building: &Building) -> SceneUpdate {
+    let floors = building.floors().iter().enumerate();
+    let walls = floors.map(|(index, floor)| SceneEntity {
+        cubes: walls(&floor.map),
+        ..entity(Duration::ZERO, frames::floor(index), format!("walls {index}"))
+    });
+    update(walls.collect())
+}
+
+/// Named places of all floors.
+pub(super) fn places(building: &Building) -> SceneUpdate {
     let mut entities = Vec::new();
     for (index, floor) in building.floors().iter().enumerate() {
-        let frame = frames::floor(index);
-        entities.push(SceneEntity {
-            cubes: walls(&floor.map),
-            ..entity(Duration::ZERO, frame.clone(), format!("walls {index}"))
-        });
         for place in &floor.places {
             entities.push(SceneEntity {
                 spheres: vec![SpherePrimitive {
@@ -61,7 +66,7 @@ pub(super) fn building(building: &Building) -> SceneUpdate {
                     color: color(0.2, 0.5, 0.9, 0.8),
                 }],
                 texts: vec![text(frames::pose(place.position, 0.5, 0.0), &place.name)],
-                ..entity(Duration::ZERO, frame.clone(), format!("place {}", place.name))
+                ..entity(Duration::ZERO, frames::floor(index), format!("place {}", place.name))
             });
         }
     }

@@ -5,17 +5,25 @@ use std::collections::BTreeSet;
 use prost::Message as _;
 use prost_types::FileDescriptorSet;
 
-/// Package `selfneg.v1`: what happened, as far as it is nobody's personal data.
-#[allow(missing_docs, clippy::all, clippy::pedantic, reason = "generated")]
-pub mod evidence {
-    include!(concat!(env!("OUT_DIR"), "/selfneg.v1.rs"));
+/// The packages as Protobuf nests them, so that one can name the other.
+#[allow(missing_docs, clippy::all, clippy::pedantic, unreachable_pub, reason = "generated")]
+mod selfneg {
+    pub mod v1 {
+        include!(concat!(env!("OUT_DIR"), "/selfneg.v1.rs"));
+    }
+    pub mod personal {
+        pub mod v1 {
+            include!(concat!(env!("OUT_DIR"), "/selfneg.personal.v1.rs"));
+        }
+    }
 }
 
 /// Package `selfneg.personal.v1`: what is personal of it.
-#[allow(missing_docs, clippy::all, clippy::pedantic, reason = "generated")]
-pub mod personal {
-    include!(concat!(env!("OUT_DIR"), "/selfneg.personal.v1.rs"));
-}
+#[doc(inline)]
+pub use selfneg::personal::v1 as personal;
+/// Package `selfneg.v1`: what happened, as far as it is nobody's personal data.
+#[doc(inline)]
+pub use selfneg::v1 as evidence;
 
 /// Package `foxglove`: the part that we fill of what viewers know by name.
 #[allow(missing_docs, clippy::all, clippy::pedantic, reason = "generated")]
@@ -38,6 +46,10 @@ pub enum Schema {
     Record,
     /// `selfneg.v1.Command`
     Command,
+    /// `selfneg.v1.Sealed`
+    Sealed,
+    /// `selfneg.v1.Commitment`
+    Commitment,
     /// `selfneg.personal.v1.Rules`
     Rules,
     /// `selfneg.personal.v1.Participant`
@@ -46,6 +58,8 @@ pub enum Schema {
     Input,
     /// `selfneg.personal.v1.Reply`
     Reply,
+    /// `selfneg.personal.v1.Opening`
+    Opening,
     /// `foxglove.FrameTransforms`
     FrameTransforms,
     /// `foxglove.Grid`
@@ -62,16 +76,19 @@ pub enum Schema {
 
 impl Schema {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 18] = [
         Self::Header,
         Self::End,
         Self::Event,
         Self::Record,
         Self::Command,
+        Self::Sealed,
+        Self::Commitment,
         Self::Rules,
         Self::Participant,
         Self::Input,
         Self::Reply,
+        Self::Opening,
         Self::FrameTransforms,
         Self::Grid,
         Self::Log,
@@ -79,6 +96,12 @@ impl Schema {
         Self::PoseInFrame,
         Self::SceneUpdate,
     ];
+
+    /// The one of this full name.
+    #[must_use]
+    pub fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|schema| schema.name() == name)
+    }
 
     /// The message's full name.
     #[must_use]
@@ -89,10 +112,13 @@ impl Schema {
             Self::Event => "selfneg.v1.Event",
             Self::Record => "selfneg.v1.Record",
             Self::Command => "selfneg.v1.Command",
+            Self::Sealed => "selfneg.v1.Sealed",
+            Self::Commitment => "selfneg.v1.Commitment",
             Self::Rules => "selfneg.personal.v1.Rules",
             Self::Participant => "selfneg.personal.v1.Participant",
             Self::Input => "selfneg.personal.v1.Input",
             Self::Reply => "selfneg.personal.v1.Reply",
+            Self::Opening => "selfneg.personal.v1.Opening",
             Self::FrameTransforms => "foxglove.FrameTransforms",
             Self::Grid => "foxglove.Grid",
             Self::Log => "foxglove.Log",
@@ -108,7 +134,8 @@ impl Schema {
             Self::Event => "selfneg/v1/event.proto",
             Self::Record => "selfneg/v1/record.proto",
             Self::Command => "selfneg/v1/command.proto",
-            Self::Rules | Self::Participant | Self::Input | Self::Reply => {
+            Self::Sealed | Self::Commitment => "selfneg/v1/sealed.proto",
+            Self::Rules | Self::Participant | Self::Input | Self::Reply | Self::Opening => {
                 "selfneg/personal/v1/personal.proto"
             }
             Self::FrameTransforms => "foxglove/FrameTransforms.proto",

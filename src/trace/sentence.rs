@@ -1,4 +1,7 @@
 //! One plain sentence per event, record and command, with pseudonyms and nothing personal.
+//!
+//! Goals and emergencies are named as the specification names them, or by their numbers if
+//! its names are empty, as in the open part of a trace.
 
 use crate::mission::{
     CategoryId, Closing, Command, Event, Evidence, GoalEnd, GoalId, Output, Record, Refusal, Round, Served,
@@ -48,10 +51,11 @@ fn tell_command(command: &Command, specification: &Specification) -> String {
             format!("The robot asks {} for data, to be answered within {within_ms} ms.", user_name(user))
         }
         Command::Execute { execution, goal, task, action, .. } => {
-            let task = specification.goals.get(usize::from(goal.0)).and_then(|goal| goal.tasks.get(task));
-            let what = task.and_then(|task| Some((&task.name, task.actions.get(action)?)));
-            let what =
-                what.map_or_else(|| "an action".to_owned(), |(task, action)| format!("{task}: {action}"));
+            let known = specification.goals.get(usize::from(goal.0)).and_then(|goal| goal.tasks.get(task));
+            let what = match known.and_then(|task| Some((&task.name, task.actions.get(action)?))) {
+                Some((task, action)) if !task.is_empty() => format!("{task}: {action}"),
+                _ => format!("action {action} of task {task}"),
+            };
             format!("The robot begins execution {}, {what}.", execution.0)
         }
         Command::Stop { execution } => format!("The robot stops execution {}.", execution.0),
@@ -180,14 +184,22 @@ fn name(user: UserId) -> String {
     format!("User {}", user.0)
 }
 
+/// A goal by its name, or by its number where names are personal.
 fn goal_name(goal: GoalId, specification: &Specification) -> String {
-    let known = specification.goals.get(usize::from(goal.0));
-    known.map_or_else(|| format!("the unknown goal {}", goal.0), |known| format!("{:?}", known.name))
+    match specification.goals.get(usize::from(goal.0)) {
+        Some(known) if known.name.is_empty() => format!("goal {}", goal.0),
+        Some(known) => format!("{:?}", known.name),
+        None => format!("the unknown goal {}", goal.0),
+    }
 }
 
+/// An emergency's category, likewise.
 fn category_name(category: CategoryId, specification: &Specification) -> String {
-    let known = specification.emergencies.get(usize::from(category.0));
-    known.map_or_else(|| format!("unknown category {}", category.0), |known| format!("{:?}", known.name))
+    match specification.emergencies.get(usize::from(category.0)) {
+        Some(known) if known.name.is_empty() => format!("category {}", category.0),
+        Some(known) => format!("{:?}", known.name),
+        None => format!("unknown category {}", category.0),
+    }
 }
 
 const fn waiting(why: Waiting) -> &'static str {

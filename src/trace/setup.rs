@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use prost::Message as _;
 use selfneg_core::{Options, Rank};
 
 use super::encode::{options_of, rank, stated};
@@ -15,23 +16,111 @@ use crate::mission::{
 };
 use crate::precedence::Policy;
 use crate::run::{Participant, Setup};
+use crate::seal::chain::rules_digest;
 
 use super::replay::ReplayError;
 
-pub(super) fn header(setup: &Setup<'_>) -> open::Header {
+/// What is in the open: how many there are of everything that has a name, and no name.
+pub(super) fn header(setup: &Setup<'_>, rules: &personal::Rules, privacy: open::Privacy) -> open::Header {
+    let options = options_of(setup.options);
+    let policy = setup.policy.map_or_else(String::new, |policy| policy.name().to_owned());
     open::Header {
         format_major: FORMAT_MAJOR,
         format_minor: FORMAT_MINOR,
         program: PROGRAM.to_owned(),
-        scenario: setup.name.to_owned(),
-        options: Some(options_of(setup.options)),
-        policy: setup.policy.map_or_else(String::new, |policy| policy.name().to_owned()),
-        building: setup.building.name().to_owned(),
-        floors: setup.building.floors().iter().map(|floor| floor.name.clone()).collect(),
-        places: setup.places.to_vec(),
-        specification: Some(specification(setup.specification)),
+        rules_digest: rules_digest(&options, &policy, &rules.encode_to_vec()).to_vec(),
+        options: Some(options),
+        policy,
+        floors: nameless(rules.floors.len()),
+        places: nameless(rules.places.len()),
+        specification: rules.specification.as_ref().map(without_names),
         participants: setup.participants.iter().map(|participant| participant.pseudonym.0).collect(),
+        privacy: privacy.into(),
+        ..open::Header::default()
     }
+}
+
+fn nameless(count: usize) -> Vec<String> {
+    vec![String::new(); count]
+}
+
+/// A specification's structure.
+fn without_names(named: &open::Specification) -> open::Specification {
+    let task = |task: &open::Task| open::Task {
+        name: String::new(),
+        actions: nameless(task.actions.len()),
+        interruptible: task.interruptible,
+    };
+    let goal = |goal: &open::Goal| open::Goal {
+        tasks: goal.tasks.iter().map(task).collect(),
+        ..open::Goal::default()
+    };
+    let emergency = |emergency: &open::Emergency| open::Emergency {
+        gravity: emergency.gravity,
+        proof: emergency.proof,
+        ..open::Emergency::default()
+    };
+    open::Specification {
+        goals: named.goals.iter().map(goal).collect(),
+        emergencies: named.emergencies.iter().map(emergency).collect(),
+        willingness_from_percent: named.willingness_from_percent,
+        limits: named.limits,
+        ..open::Specification::default()
+    }
+}
+
+/// The same for those who tell what happens without names.
+pub(super) fn anonymous(specification: &Specification) -> Specification {
+    let task = |task: &Task| Task {
+        name: String::new(),
+        actions: nameless(task.actions.len()),
+        interruptible: task.interruptible,
+    };
+    let goal = |goal: &Goal| Goal { tasks: goal.tasks.iter().map(task).collect(), ..Goal::default() };
+    let category = |category: &Category| Category {
+        name: String::new(),
+        gravity: category.gravity,
+        proof: category.proof,
+        goal: String::new(),
+    };
+    Specification {
+        goals: specification.goals.iter().map(goal).collect(),
+        emergencies: specification.emergencies.iter().map(category).collect(),
+        ..Specification::default()
+    }
+}
+
+/// Gives an open header its names. A header of format 1.0 has them.
+///
+/// # Errors
+/// What is wrong, if these are not the header's rules.
+pub(super) fn name_header(
+    header: &mut open::Header,
+    rules: &personal::Rules,
+    bytes: &[u8],
+) -> Result<(), &'static str> {
+    if header.rules_digest.is_empty() && rules.specification.is_none() {
+        return Ok(());
+    }
+    let options = header.options.clone().unwrap_or_default();
+    if rules_digest(&options, &header.policy, bytes) != *header.rules_digest {
+        return Err("they are not the rules of the header's digest");
+    }
+    let same = (&header.floors, &header.places, &header.specification)
+        == (
+            &nameless(rules.floors.len()),
+            &nameless(rules.places.len()),
+            &rules.specification.as_ref().map(without_names),
+        );
+    if !same {
+        return Err("they have another structure than the header");
+    }
+    header.scenario.clone_from(&rules.scenario);
+    header.building.clone_from(&rules.building);
+    header.floors.clone_from(&rules.floors);
+    header.places.clone_from(&rules.places);
+    header.specification.clone_from(&rules.specification);
+    Ok(())
 }
 
 fn specification(specification: &Specification) -> open::Specification {
@@ -103,6 +192,11 @@ pub(super) fn rules(setup: &Setup<'_>) -> personal::Rules {
         inferences: specification.inferences.iter().map(inference).collect(),
         normative: specification.normative.iter().map(normative).collect(),
         context_implications: contexts.collect(),
+        scenario: setup.name.to_owned(),
+        building: setup.building.name().to_owned(),
+        floors: setup.building.floors().iter().map(|floor| floor.name.clone()).collect(),
+        places: setup.places.to_vec(),
+        specification: Some(self::specification(specification)),
     }
 }
 

@@ -1,12 +1,16 @@
 //! Where a message goes, and whether it is personal.
 
 use std::borrow::Cow;
+use std::fmt;
 
 use super::schema::Schema;
 use crate::mission::{Record, UserId};
 
 /// What all personal topics begin with, and no other.
 pub const PERSONAL: &str = "/personal/";
+
+/// What the topics begin with that hold personal messages encrypted.
+pub const SEALED: &str = "/sealed/";
 
 /// Whose personal data a message holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -15,8 +19,22 @@ pub enum Whose {
     User(UserId),
     /// Somebody's in the simulated world who is not a user, by order of appearance from 1.
     Bystander(u32),
-    /// Nobody's in particular: it is needed to read all the others, or may name several people.
+    /// Nobody's: it is needed to read all the others.
     Everyone,
+    /// It names or shows several people. It is erased with the first of them.
+    Several,
+}
+
+impl fmt::Display for Whose {
+    /// As it stands in topics and scenes.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::User(UserId(number)) => write!(f, "user-{number}"),
+            Self::Bystander(number) => write!(f, "bystander-{number}"),
+            Self::Everyone => f.write_str("everyone"),
+            Self::Several => f.write_str("several"),
+        }
+    }
 }
 
 /// A topic, with its schema.
@@ -43,14 +61,22 @@ impl Topic {
     pub const COMMAND: Self = topic("/mission/command", Schema::Command);
     /// One plain sentence per event, record and command, with pseudonyms.
     pub const LOG: Self = topic("/log", Schema::Log);
-    /// Frames of the floors and of the robot.
+    /// Frames of the floors.
     pub const FRAMES: Self = topic("/tf", Schema::FrameTransforms);
-    /// Walls and named places.
+    /// Commitments to what is personal.
+    pub const COMMITMENT: Self = topic("/mission/commitment", Schema::Commitment);
+    /// Walls.
     pub const BUILDING: Self = topic("/scene/building", Schema::SceneUpdate);
     /// The robot's shape, in its own frames.
     pub const ROBOT: Self = topic("/scene/robot", Schema::SceneUpdate);
+    /// Frames of the robot: where it is, and so where people are met.
+    pub const ROBOT_FRAMES: Self = topic("/personal/tf", Schema::FrameTransforms);
     /// Where the robot is.
-    pub const ROBOT_POSE: Self = topic("/robot/pose", Schema::PoseInFrame);
+    pub const ROBOT_POSE: Self = topic("/personal/robot/pose", Schema::PoseInFrame);
+    /// Named places.
+    pub const PLACES: Self = topic("/personal/places", Schema::SceneUpdate);
+    /// What opens commitments.
+    pub const OPENING: Self = topic("/personal/opening", Schema::Opening);
     /// What rules and specification name and rank.
     pub const RULES: Self = topic("/personal/rules", Schema::Rules);
     /// Who a pseudonym is.
@@ -109,30 +135,27 @@ impl Topic {
         Self { name: format!("/map/{floor}/walls").into(), schema: Schema::PointCloud }
     }
 
+    /// What is personal of one subject, encrypted.
+    #[must_use]
+    pub fn sealed(whose: Whose) -> Self {
+        Self { name: format!("{SEALED}{whose}").into(), schema: Schema::Sealed }
+    }
+
     /// A person as a shape.
     #[must_use]
     pub fn person_scene(whose: Whose) -> Self {
-        Self { name: format!("/personal/people/{}/scene", id(whose)).into(), schema: Schema::SceneUpdate }
+        Self { name: format!("/personal/people/{}/scene", whose).into(), schema: Schema::SceneUpdate }
     }
 
     /// Where a person is.
     #[must_use]
     pub fn person_pose(whose: Whose) -> Self {
-        Self { name: format!("/personal/people/{}/pose", id(whose)).into(), schema: Schema::PoseInFrame }
+        Self { name: format!("/personal/people/{}/pose", whose).into(), schema: Schema::PoseInFrame }
     }
 
     /// Whether its messages are personal.
     #[must_use]
     pub fn is_personal(&self) -> bool {
         self.name.starts_with(PERSONAL)
-    }
-}
-
-/// A pseudonym as it stands in topics and scenes.
-pub(super) fn id(whose: Whose) -> String {
-    match whose {
-        Whose::User(UserId(number)) => format!("user-{number}"),
-        Whose::Bystander(number) => format!("bystander-{number}"),
-        Whose::Everyone => "everyone".to_owned(),
     }
 }

@@ -194,6 +194,15 @@ impl UserMemory {
         self.status.all().iter().any(same)
     }
 
+    /// The name of a condition that the rules do not list.
+    pub(super) fn unlisted_name(&self, condition: u16) -> Option<&str> {
+        let named = |statement: &&Statement| {
+            !statement.is_vacant() && statement.condition == condition && !statement.name.is_vacant()
+        };
+        let statement = self.status.all().iter().find(named)?;
+        std::str::from_utf8(statement.name.written()).ok()
+    }
+
     /// Gives an attribute of the context a value.
     pub(super) fn set(&mut self, attribute: &str, value: &str) -> Result<(), Unusable> {
         let found = self.context.all().iter().position(|cell| cell.name.is(attribute));

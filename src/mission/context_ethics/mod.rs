@@ -77,6 +77,11 @@ impl ContextEthicsManager {
         stated.map(|Statement { condition, .. }| Condition(*condition)).chain(inferred.map(|(_, c)| *c))
     }
 
+    /// The name of a condition that the rules do not list.
+    pub(super) fn unlisted_name(&self, condition: Condition) -> Option<&str> {
+        self.memory.unlisted_name(condition.0)
+    }
+
     /// Which of the goal's implications in particular contexts applies to this user.
     pub(super) fn goal_context(&self, goal: GoalId, rules: &MissionRules) -> Option<usize> {
         rules.contexts_of(goal).iter().position(|case| self.memory.is(&case.attribute, &case.value))
