@@ -187,6 +187,17 @@ impl BoundRules {
         self.conditions.get_index(usize::from(condition.0)).map_or("?", String::as_str)
     }
 
+    /// The disposition's name.
+    #[must_use]
+    pub fn disposition_name(&self, disposition: Disposition) -> &str {
+        self.dispositions.get_index(usize::from(disposition.0)).map_or("?", String::as_str)
+    }
+
+    /// The conditions that the rules themselves list, in their order; users may name more.
+    pub fn listed(&self) -> impl Iterator<Item = Condition> {
+        (0..=u16::MAX).map(Condition).take(self.activation.len())
+    }
+
     /// The rows of the activation, for [`Activation::new`](selfneg_core::Activation::new).
     #[must_use]
     pub fn rows(&self) -> Vec<&[Disposition]> {
@@ -210,6 +221,35 @@ impl BoundUser {
     #[must_use]
     pub fn conditions(&self) -> &[Condition] {
         &self.conditions
+    }
+
+    /// The user's ranks in the active context, one for each disposition of the rules.
+    #[must_use]
+    pub fn ranks(&self) -> &[Rank] {
+        &self.ranks
+    }
+
+    /// How often the user's goal names this disposition.
+    #[must_use]
+    pub fn mentions(&self, disposition: Disposition) -> u8 {
+        Implication::new(&self.mentions).mentions(disposition)
+    }
+
+    /// The same user with these true conditions, disclosed in this order.
+    #[must_use]
+    pub fn with_conditions(&self, conditions: Vec<Condition>) -> Self {
+        Self { conditions, ..self.clone() }
+    }
+
+    /// The same user, ranking one disposition so; unchanged if the profile has no place for
+    /// the disposition.
+    #[must_use]
+    pub fn with_rank(&self, disposition: Disposition, rank: Rank) -> Self {
+        let mut user = self.clone();
+        if let Some(slot) = user.ranks.get_mut(usize::from(disposition.0)) {
+            *slot = rank;
+        }
+        user
     }
 
     /// The engine's view of the user.

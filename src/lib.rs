@@ -36,6 +36,7 @@
 //! | [`mod@optimum`] | what would have been best for all, and how much a decision lost |
 //! | [`mod@regret`] | how much a protocol variant loses at most, over a whole domain |
 //! | [`mod@policies`] | how often the policies for many users serve somebody whom another beats |
+//! | [`counterfactual`], [`disclosure`] | what would have changed a decision; how much was disclosed for it |
 //! | [`transcript`], [`story`], [`record`] | what was observed, told to people, as JSON |
 //! | [`lint`] | what is legal but surely not meant |
 //! | [`mod@replicate`] | rerun the published package against its own logs |
@@ -45,6 +46,7 @@
 //! | [`trace`] | a run as evidence: written, read back, replayed |
 //! | [`report`] | a trace as a page for people |
 //! | [`mod@case`] | a trace's decisions, each with what it takes to make it again |
+//! | [`mod@explain`] | why was Bob made to wait? For anybody, one user, the auditor |
 //! | [`seal`] | signatures, encryption and commitments of traces |
 //! | [`audit`] | whether a trace is whole and unchanged, and the robot kept its rules |
 //! | [`demo`] | the paper's mall |
@@ -56,7 +58,10 @@ pub mod audit;
 pub mod binding;
 pub mod case;
 pub mod command;
+pub mod counterfactual;
 pub mod demo;
+pub mod disclosure;
+pub mod explain;
 pub mod input;
 pub mod lint;
 pub mod mission;

@@ -8,6 +8,7 @@ use selfneg_core::Options;
 
 use super::simulate::{play, told};
 use super::{CommandError, Report, Status, json, key_files, report, write_whole};
+use crate::audit::Keys;
 use crate::binding::{BoundRules, GoalChoice};
 use crate::demo;
 use crate::precedence::{Policy, decide};
@@ -40,6 +41,10 @@ impl Demo {
             ["decision.json", "trace.mcap", "run.svg", "report.html"].map(|name| self.out.join(name));
         write_whole(&decided, &document)?;
         let (signer, auditor) = key_files::of_folder(&self.out)?;
+        let keys = Keys {
+            robots: vec![signer.public()],
+            identities: key_files::auditor_keys(&[self.out.join("auditor.key")])?,
+        };
         let seal = Seal {
             privacy: Privacy::Sealed(vec![auditor]),
             signer: Some(signer),
@@ -47,7 +52,7 @@ impl Demo {
         };
         let ran = play(&scenario, false, Some((&recorded, seal)))?;
         write_whole(&drawn, &ran.sketch.to_svg())?;
-        report::write(&recorded, &reported)?;
+        report::write(&recorded, &keys, &reported)?;
         if self.json {
             return Ok(Report { output: document, warnings: Vec::new(), status: Status::Passed });
         }

@@ -7,6 +7,7 @@ mod audit;
 mod demo;
 mod durable;
 mod erase;
+mod explain;
 mod graph;
 mod key_files;
 mod keygen;
@@ -37,6 +38,7 @@ use selfneg_model::lottery::LotteryError;
 use selfneg_model::order::OrderError;
 use serde::Serialize;
 
+use crate::explain::ExplainError;
 use crate::input::InputError;
 use crate::policies::PoliciesError;
 use crate::precedence::PrecedenceError;
@@ -44,7 +46,7 @@ use crate::regret::RegretError;
 use crate::replicate::ReplicateError;
 use crate::scenario::ScenarioError;
 use crate::seal::KeyError;
-use crate::trace::{EraseError, UnsealError};
+use crate::trace::{EraseError, TraceError, UnsealError};
 use crate::verify::VerifyError;
 
 /// Who gets the robot? Ethical decisions between interrupting users.
@@ -66,6 +68,7 @@ enum Command {
     Demo(demo::Demo),
     Negotiate(negotiate::Negotiate),
     Simulate(simulate::Simulate),
+    Explain(explain::Explain),
     Report(report::Report),
     Keygen(keygen::Keygen),
     Audit(audit::Audit),
@@ -143,6 +146,22 @@ pub enum CommandError {
     /// Somebody who watches a run cannot go on.
     #[error("the run cannot be recorded: {0}")]
     Recording(io::Error),
+    /// A trace cannot be read.
+    #[error("{}: {source}", file.display())]
+    Trace {
+        /// The trace.
+        file: PathBuf,
+        /// Why.
+        source: TraceError,
+    },
+    /// A trace's decisions cannot be explained so.
+    #[error("{}: {source}", file.display())]
+    Unexplained {
+        /// The trace.
+        file: PathBuf,
+        /// Why.
+        source: ExplainError,
+    },
     /// A file holds no key.
     #[error("{}: {source}", file.display())]
     Key {
@@ -170,22 +189,6 @@ pub enum CommandError {
     /// The arguments do not fit together.
     #[error("{0}")]
     Arguments(String),
-    /// A file cannot be read.
-    #[error("{}: cannot be read: {source}", file.display())]
-    Unreadable {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
-    /// A file is not a trace that can be read.
-    #[error("{}: {source}", file.display())]
-    Trace {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        source: TraceError,
-    },
     /// A file cannot be written.
     #[error("{}: cannot be written: {source}", file.display())]
     Unwritable {
@@ -209,6 +212,7 @@ impl Program {
             Command::Demo(demo) => demo.run(),
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Simulate(simulate) => simulate.run(),
+            Command::Explain(explain) => explain.run(),
             Command::Report(report) => report.run(),
             Command::Keygen(keygen) => keygen.run(),
             Command::Audit(audit) => audit.run(),

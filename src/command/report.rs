@@ -1,20 +1,30 @@
 //! `selfneg report`: a trace as a page for people.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{CommandError, Report as Said, Status, write_whole};
-use crate::report::{Page, Source};
-use crate::trace::{Message, Reader, Recording};
+use super::key_files::{auditor_keys, robot_public_key};
+use super::{CommandError, Report as Said, Status, trace_file, write_whole};
+use crate::audit::{self, Keys};
+use crate::report::{File, Page};
 
 /// Make a page of a trace that anybody can read: one HTML file, without network
+///
+/// With what is personal if the trace holds it in the open or a key opens it; else without.
+/// Exit code 1 if the trace is cut or damaged, not as signed, or a decision is wrong; the page is
+/// written all the same. docs/report.md says what is on it.
 #[derive(Debug, Args)]
 pub(super) struct Report {
-    /// The trace (MCAP; docs/trace.md)
+    /// The trace
     #[arg(value_name = "TRACE")]
     trace: PathBuf,
+    /// An auditor's private key, which opens what is personal; may be given several times
+    #[arg(long, value_name = "AUDITOR_KEY")]
+    identity: Vec<PathBuf>,
+    /// A robot's public key whose signature is trusted; may be given several times
+    #[arg(long, value_name = "PUB")]
+    robot_key: Vec<PathBuf>,
     /// The file to write; replaced if it is there
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -22,20 +32,35 @@ pub(super) struct Report {
 
 impl Report {
     pub(super) fn run(&self) -> Result<Said, CommandError> {
-        write(&self.trace, &self.output)?;
+        let robots = self.robot_key.iter().map(|file| robot_public_key(file));
+        let keys =
+            Keys { robots: robots.collect::<Result<_, _>>()?, identities: auditor_keys(&self.identity)? };
+        let found = write(&self.trace, &keys, &self.output)?;
         let output = format!("The report is in {}\n", self.output.display());
-        Ok(Said { output, warnings: Vec::new(), status: Status::Passed })
+        let (warnings, status) = match found {
+            audit::Status::Unreadable
+            | audit::Status::Tampered
+            | audit::Status::WrongDecision
+            | audit::Status::Violation
+            | audit::Status::Truncated => {
+                let warning = format!("{}: {found}; the report says why", self.trace.display());
+                (vec![warning], Status::Failed)
+            }
+            audit::Status::Untrusted
+            | audit::Status::Unsealed
+            | audit::Status::Incomplete
+            | audit::Status::Ok => (Vec::new(), Status::Passed),
+        };
+        Ok(Said { output, warnings, status })
     }
 }
 
-/// Writes the page of a trace.
-pub(super) fn write(trace: &Path, page: &Path) -> Result<(), CommandError> {
-    let unreadable = |source| CommandError::Unreadable { file: trace.to_owned(), source };
-    let bytes = fs::read(trace).map_err(unreadable)?;
-    let not_a_trace = |source| CommandError::Trace { file: trace.to_owned(), source };
-    let recording = Recording::read(&bytes).map_err(not_a_trace)?;
-    let messages: Vec<Message> = Reader::new(&bytes).map_while(Result::ok).collect();
-    let file = trace.file_name().unwrap_or_default().to_string_lossy();
-    let source = Source { file: &file, bytes: &bytes, recording: &recording, messages: &messages };
-    write_whole(page, &Page::of(source).to_html())
+/// Writes the page of a trace, and says what the audit of it comes to.
+pub(super) fn write(trace: &Path, keys: &Keys, page: &Path) -> Result<audit::Status, CommandError> {
+    let bytes = trace_file::read(trace)?;
+    let name = trace.file_name().unwrap_or_default().to_string_lossy();
+    let made = Page::of(File { name: &name, bytes: &bytes }, keys);
+    let made = made.map_err(|source| CommandError::Trace { file: trace.to_owned(), source })?;
+    write_whole(page, &made.to_html())?;
+    Ok(made.audit.status)
 }

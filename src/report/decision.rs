@@ -5,6 +5,8 @@ use std::time::Duration;
 use selfneg_core::Condition;
 
 use super::who::Who;
+use crate::binding::END_OF_GOAL;
+use crate::explain::{Explained, Section};
 use crate::trace::schema::evidence::{self, record, round};
 use crate::trace::schema::personal::{self, disclosed, reply};
 use crate::trace::{Entry, Open, Recording, Step};
@@ -18,6 +20,14 @@ pub struct Decision {
     pub at: Duration,
     /// What was decided, in a few words: "Alice keeps precedence".
     pub headline: String,
+    /// What people ask about it.
+    pub question: String,
+    /// The answer, the most important sentence first.
+    pub answer: Vec<String>,
+    /// The smallest change that would have changed it, in a sentence, if one was found.
+    pub smallest_change: Option<String>,
+    /// What else is said of it, but for what `why` holds.
+    pub sections: Vec<Section>,
     /// What decided it.
     pub why: Why,
 }
@@ -40,10 +50,19 @@ pub struct Negotiated {
     pub policy: String,
     /// The protocol variant, as `quit/aggregation/tie/fallback/willingness`.
     pub variant: String,
-    /// Why the one served is served, in a sentence.
-    pub reason: String,
     /// In the order in which they were held.
     pub negotiations: Vec<Negotiation>,
+    /// What serving whom is worth, if the data are there and the decision is right.
+    pub welfare: Option<Welfare>,
+}
+
+/// What serving whom is worth to all who took part, in ranks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Welfare {
+    /// Pseudonym, name and welfare, by arrival.
+    pub of_serving: Vec<(u32, String, u64)>,
+    /// What the decision lost against the best.
+    pub regret: u64,
 }
 
 /// Somebody who takes part in a decision.
@@ -130,13 +149,11 @@ pub enum Act {
     Quit,
 }
 
-/// All decisions of a recording.
-#[must_use]
-pub(super) fn decisions(recording: &Recording, who: &Who) -> Vec<Decision> {
+/// All decisions of a recording, with the explanations of those that were explained.
+pub(super) fn decisions(recording: &Recording, who: &Who, explained: &[Explained]) -> Vec<Decision> {
     let mut clerk = Clerk {
         who,
         conditions: condition_names(recording),
-        recording,
         goals: Vec::new(),
         held: Vec::new(),
         decided: Vec::new(),
@@ -144,7 +161,57 @@ pub(super) fn decisions(recording: &Recording, who: &Who) -> Vec<Decision> {
     for entry in &recording.entries {
         clerk.enter(entry);
     }
-    clerk.decided
+    let mut decided = clerk.decided;
+    for explained in explained {
+        let number = match explained {
+            Explained::Public(public) => public.open.decision,
+            Explained::User(own) => own.decision,
+            Explained::Auditor(auditor) => auditor.open.decision,
+        };
+        if let Some(decision) = decided.iter_mut().find(|decision| decision.number == number) {
+            decision.explain(explained, who);
+        }
+    }
+    decided
+}
+
+impl Decision {
+    fn explain(&mut self, explained: &Explained, who: &Who) {
+        let told = explained.told();
+        self.question = told.question.clone();
+        self.answer = told.answer.clone();
+        // What the page draws itself is left out.
+        let drawn = |section: &&Section| {
+            !["Who took part", "The negotiations", "What serving whom is worth"]
+                .contains(&section.title.as_str())
+                && !section.title.to_lowercase().ends_with("round by round")
+        };
+        self.sections = told.sections.iter().filter(drawn).cloned().collect();
+        let (Explained::Auditor(auditor), Why::Negotiated(negotiated)) = (explained, &mut self.why) else {
+            return;
+        };
+        if auditor.counterfactual.as_ref().is_some_and(|found| found.smallest.is_some()) {
+            let section = self.sections.iter().find(|section| section.title == "What would have changed it");
+            self.smallest_change = section.and_then(|section| section.sentences.first().cloned());
+        }
+        for (negotiation, transcript) in negotiated.negotiations.iter_mut().zip(&auditor.transcripts) {
+            for (round, told) in negotiation.rounds.iter_mut().zip(&transcript.rounds) {
+                if let (Act::Offer { discloses, .. }, Some(name)) = (&mut round.act, &told.discloses)
+                    && name != END_OF_GOAL
+                {
+                    *discloses = Some(format!("“{name}”"));
+                }
+            }
+        }
+        negotiated.welfare = auditor.welfare.as_ref().map(|welfare| Welfare {
+            of_serving: welfare
+                .of_serving
+                .iter()
+                .map(|(user, worth)| (*user, who.user(*user), *worth))
+                .collect(),
+            regret: welfare.regret,
+        });
+    }
 }
 
 /// The names of the rules' conditions, by their place; none if the rules are not there.
@@ -158,7 +225,6 @@ fn condition_names(recording: &Recording) -> Vec<String> {
 struct Clerk<'r> {
     who: &'r Who,
     conditions: Vec<String>,
-    recording: &'r Recording,
     /// Who asks for which goal.
     goals: Vec<(u32, u32)>,
     /// Since the last decision.
@@ -227,14 +293,24 @@ impl Clerk<'_> {
 
     fn decide(&mut self, at: Duration, headline: String, why: Why) {
         let number = u64::try_from(self.decided.len()).map_or(u64::MAX, |before| before.saturating_add(1));
-        self.decided.push(Decision { number, at, headline, why });
+        let (question, answer, smallest_change, sections) = Default::default();
+        self.decided.push(Decision {
+            number,
+            at,
+            headline,
+            question,
+            answer,
+            smallest_change,
+            sections,
+            why,
+        });
     }
 
     fn round(&self, at: Duration, round: &evidence::Round, personal: &[personal::Reply]) -> Round {
         let act = match &round.round {
             Some(round::Round::Offer(offer)) => {
                 let disclosed = personal.iter().find_map(|reply| match reply.reply.as_ref()? {
-                    reply::Reply::Disclosed(what) => Some(self.disclosed(round.sender, what)),
+                    reply::Reply::Disclosed(what) => Some(self.disclosed(what)),
                     _ => None,
                 });
                 let worth = personal.iter().find_map(|reply| match reply.reply.as_ref()? {
@@ -255,27 +331,16 @@ impl Clerk<'_> {
         }
     }
 
-    fn disclosed(&self, sender: u32, what: &personal::Disclosed) -> String {
+    fn disclosed(&self, what: &personal::Disclosed) -> String {
         match what.disclosed {
             Some(disclosed::Disclosed::Listed(nth)) => {
                 let name = usize::try_from(nth).ok().and_then(|nth| self.conditions.get(nth));
                 name.map_or_else(|| format!("condition {nth} of the rules"), |name| format!("“{name}”"))
             }
-            Some(disclosed::Disclosed::Unlisted(_)) => match self.only_unlisted(sender) {
-                Some(name) => format!("“{name}”"),
-                None => "a condition that no rule lists".to_owned(),
-            },
+            Some(disclosed::Disclosed::Unlisted(_)) => "a condition that no rule lists".to_owned(),
             Some(disclosed::Disclosed::Willingness(_)) => "being close to the end of the goal".to_owned(),
             None => "something that this program does not know".to_owned(),
         }
-    }
-
-    /// The one condition of a user that no rule lists, if there is but one.
-    fn only_unlisted(&self, user: u32) -> Option<&str> {
-        let known = self.recording.participants.iter().find(|participant| participant.user == user)?;
-        let mut unlisted = known.status.iter().filter(|said| !self.conditions.contains(&said.condition));
-        let only = unlisted.next()?;
-        unlisted.next().is_none().then_some(only.condition.as_str())
     }
 
     fn ended(&mut self, ended: &evidence::NegotiationEnded) {
@@ -328,26 +393,12 @@ impl Clerk<'_> {
             served: *user == decided.served,
         };
         let options = decided.options.clone().unwrap_or_default();
-        let several = decided.participants.len() > 2;
-        let reason = match (decided.agreement.is_some(), options.fallback.as_str(), several) {
-            (true, _, false) => "The two sides agreed.".to_owned(),
-            (true, _, true) => format!("The policy “{}” finds an agreement.", decided.policy),
-            (false, "first-come", _) => {
-                "There was no agreement, so the fallback decided: first come, first served.".to_owned()
-            }
-            (false, "utilitarian", _) => {
-                "There was no agreement, so the fallback decided: whoever’s service \
-                                          is worth most to all of them together."
-                    .to_owned()
-            }
-            (false, other, _) => format!("There was no agreement, so the fallback “{other}” decided."),
-        };
         Negotiated {
             parties: decided.participants.iter().map(party).collect(),
             policy: decided.policy.clone(),
             variant: variant(&options),
-            reason,
             negotiations,
+            welfare: None,
         }
     }
 }

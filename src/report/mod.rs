@@ -1,19 +1,21 @@
 //! A trace as a page for people: one HTML file that needs nothing else.
 //!
-//! [`Page::of`] collects what the page says from a trace, without a word of HTML;
-//! [`Page::to_html`] renders it. Both are pure: the same trace gives the same bytes. What comes
+//! [`Page::of`] collects what the page says, from a trace, its audit and its explanation, without
+//! a word of HTML; [`Page::to_html`] renders it. Both are pure: the same trace gives the same bytes. What comes
 //! from the trace is escaped where it is rendered, and the page's content security policy lets
 //! no other script or style run than the two that this module holds, and nothing be fetched.
 
 mod decision;
 mod html;
 mod page;
+mod seal;
 mod stage;
 mod timeline;
 mod who;
 
-pub use decision::{Act, Decision, Emergency, Ending, Negotiated, Negotiation, Party, Round, Why};
-pub use page::{Fact, Missing, Page, Source};
+pub use decision::{Act, Decision, Emergency, Ending, Negotiated, Negotiation, Party, Round, Welfare, Why};
+pub use page::{Fact, File, Missing, Page};
+pub use seal::Seal;
 pub use stage::{Floor, Mover, Place, Pose, Sample, Shape, Stage};
 pub use timeline::{KeyMoment, Kind, Moment, Sentence, Timeline};
 pub use who::Who;

@@ -3,34 +3,26 @@
 use std::time::Duration;
 
 use super::decision::{Decision, decisions, variant};
+use super::seal::Seal;
 use super::stage::Stage;
 use super::timeline::{Kind, Timeline};
 use super::who::Who;
-use crate::trace::{Message, Recording};
-
-/// What a page is made from.
-#[derive(Clone, Copy, Debug)]
-pub struct Source<'a> {
-    /// The trace's file name, for people.
-    pub file: &'a str,
-    /// The trace's bytes as they are on disk.
-    pub bytes: &'a [u8],
-    /// What was recorded.
-    pub recording: &'a Recording,
-    /// All messages, those for viewers included.
-    pub messages: &'a [Message],
-}
+use crate::audit::{Audit, Keys, audit_opened};
+use crate::explain::{Audience, explain};
+use crate::trace::{Message, Opened, TraceError, messages, open};
 
 /// A report, ready to be rendered. All text is as in the trace, not escaped.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Page {
     /// What it is about.
     pub title: String,
+    /// Whether names, conditions or ranks are on it.
+    pub personal: bool,
     /// What the trace is, one line each.
     pub facts: Vec<Fact>,
-    /// What cannot be shown, and what would be needed for it.
-    pub missing: Vec<Missing>,
-    /// Since the run's begin.
+    /// What cannot be shown, if anything.
+    pub missing: Option<Missing>,
+    /// The length of the run.
     pub until: Duration,
     /// The time that the map opens at: the first interruption, or the first decision.
     pub opening: Duration,
@@ -40,36 +32,77 @@ pub struct Page {
     pub timeline: Timeline,
     /// What was decided.
     pub decisions: Vec<Decision>,
+    /// Who signed the trace, and where what is personal is.
+    pub seal: Seal,
+    /// What was checked.
+    pub audit: Audit,
 }
 
 /// A line of what the trace is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fact {
-    /// For instance "recorded by".
+    /// For instance "Recorded by".
     pub name: &'static str,
     /// For instance "selfneg 0.1.0".
     pub value: String,
 }
 
-/// Something that the page cannot show.
+/// What the page cannot show.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Missing {
-    /// What.
-    pub what: &'static str,
+    /// One thing each.
+    pub what: Vec<&'static str>,
     /// Why, and what would be needed.
     pub why: String,
 }
 
+/// A trace's file, as it is on disk.
+#[derive(Clone, Copy, Debug)]
+pub struct File<'a> {
+    /// Its name, for people.
+    pub name: &'a str,
+    /// All of it.
+    pub bytes: &'a [u8],
+}
+
+/// A trace as far as keys open it, and what was found out about it.
+struct Source<'a> {
+    file: File<'a>,
+    opened: &'a Opened,
+    messages: &'a [Message],
+    audit: Audit,
+}
+
 impl Page {
-    /// The page of a trace.
-    #[must_use]
-    pub fn of(source: Source<'_>) -> Self {
-        let Source { recording, messages, .. } = source;
+    /// The page of a trace, with what the keys open of it: everything for an auditor if the
+    /// personal part can be read, else what is open.
+    ///
+    /// # Errors
+    /// [`TraceError`] if not even the trace's header can be read, or its format is a newer one.
+    pub fn of(file: File<'_>, keys: &Keys) -> Result<Self, TraceError> {
+        let opened = open(file.bytes, &keys.identities)?;
+        let mut messages = messages(file.bytes, &keys.identities)?;
+        if opened.recording.damage.is_some() {
+            // What the recording refused is the last that it counted.
+            let read = opened.recording.messages.saturating_sub(1);
+            messages.retain(|message| u64::from(message.sequence) < read);
+        }
+        let audit = audit_opened(&opened, keys);
+        Ok(Self::new(Source { file, opened: &opened, messages: &messages, audit }))
+    }
+
+    fn new(source: Source<'_>) -> Self {
+        let Source { opened, messages, .. } = &source;
+        let recording = &opened.recording;
         let header = &recording.header;
-        let who = Who::of(recording, header.specification.as_ref());
-        let stage = Stage::of(header, &[], messages);
+        let who = Who::of(recording);
+        let stage = Stage::of(header, messages);
         let timeline = Timeline::of(messages);
-        let decisions = decisions(recording, &who);
+        let personal = recording.rules.is_some();
+        let audience = if personal { Audience::Auditor } else { Audience::Public };
+        // Explaining everything for a level that can be read has no reason to fail.
+        let explained = explain(recording, audience, None).unwrap_or_default();
+        let decisions = decisions(recording, &who, &explained);
         let last = messages.iter().map(|message| message.log_time).max().unwrap_or(0);
         let interruption = timeline.sentences(|kind| kind == Kind::Interruption).next();
         let opening = interruption
@@ -79,22 +112,27 @@ impl Page {
         let title = if header.scenario.is_empty() { "A run of the robot" } else { &header.scenario };
         Self {
             title: title.to_owned(),
-            facts: facts(source, decisions.len()),
-            missing: missing(recording, &stage, &timeline),
+            personal: personal || who.knows_names() || timeline.named || stage.robot().is_some(),
+            facts: facts(&source, decisions.len()),
+            missing: missing(opened, &stage, &timeline),
             until: Duration::from_nanos(last),
             opening,
+            seal: Seal::of(opened, source.audit.seal.as_ref()),
             stage,
             timeline,
             decisions,
+            audit: source.audit,
         }
     }
 }
 
-fn facts(source: Source<'_>, decisions: usize) -> Vec<Fact> {
-    let header = &source.recording.header;
+fn facts(source: &Source<'_>, decisions: usize) -> Vec<Fact> {
+    let recording = &source.opened.recording;
+    let header = &recording.header;
+    let File { name, bytes } = source.file;
     let mut facts = vec![
-        Fact { name: "Trace", value: format!("{}, {} bytes", source.file, grouped(source.bytes.len())) },
-        Fact { name: "BLAKE3 of the file", value: blake3::hash(source.bytes).to_hex().to_string() },
+        Fact { name: "File", value: format!("{name}, {} bytes", grouped(bytes.len())) },
+        Fact { name: "BLAKE3 of the file", value: blake3::hash(bytes).to_hex().to_string() },
         Fact { name: "Recorded by", value: header.program.clone() },
         Fact { name: "Format", value: format!("{}.{}", header.format_major, header.format_minor) },
         Fact { name: "Decisions", value: decisions.to_string() },
@@ -102,7 +140,7 @@ fn facts(source: Source<'_>, decisions: usize) -> Vec<Fact> {
     if let Some(options) = &header.options {
         facts.push(Fact { name: "Protocol variant", value: variant(options) });
     }
-    let complete = match &source.recording.damage {
+    let complete = match &recording.damage {
         None => "yes, as far as the trace itself can tell".to_owned(),
         Some(damage) => format!("no: {damage}"),
     };
@@ -110,24 +148,23 @@ fn facts(source: Source<'_>, decisions: usize) -> Vec<Fact> {
     facts
 }
 
-fn missing(recording: &Recording, stage: &Stage, timeline: &Timeline) -> Vec<Missing> {
-    let mut missing = Vec::new();
-    let hidden = "The personal part of this trace is not there, or locked.".to_owned();
-    if recording.rules.is_none() {
-        let what = "what was disclosed, what it was worth, and what people are called";
-        missing.push(Missing { what, why: hidden.clone() });
+fn missing(opened: &Opened, stage: &Stage, timeline: &Timeline) -> Option<Missing> {
+    let mut what = Vec::new();
+    if opened.recording.rules.is_none() {
+        what.push("what people and goals are called, what was disclosed, and what it was worth");
+        what.push("what would have changed a decision, and what serving whom is worth");
     }
     if stage.robot().is_none() {
-        missing.push(Missing { what: "where the robot went", why: hidden.clone() });
+        what.push("where the robot and people were");
     }
     if !timeline.named {
-        missing.push(Missing { what: "the story with names", why: hidden });
+        what.push("the story with names");
     }
-    missing
+    (!what.is_empty()).then(|| Missing { what, why: super::seal::why_hidden(opened) })
 }
 
 /// A number with its thousands apart.
-fn grouped(number: usize) -> String {
+pub(super) fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (nth, digit) in digits.chars().enumerate() {

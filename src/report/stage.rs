@@ -97,16 +97,15 @@ impl Stage {
     /// What the messages for viewers show. Messages that do not decode are left out: the page
     /// is drawn from what is there, and the audit says what is wrong.
     #[must_use]
-    pub fn of(header: &evidence::Header, floors: &[String], messages: &[Message]) -> Self {
+    pub fn of(header: &evidence::Header, messages: &[Message]) -> Self {
         let mut stage = Self::default();
-        let names = if floors.is_empty() { &header.floors } else { floors };
         let mut movers: BTreeMap<Shape, Mover> = BTreeMap::new();
         let mut order = vec![Shape::Robot];
         let mut places = Vec::new();
         for message in messages {
             let at = Duration::from_nanos(message.log_time);
             if *message.schema == *Schema::Grid.name() {
-                if let Some(floor) = floor_of(message, names) {
+                if let Some(floor) = floor_of(message, &header.floors) {
                     stage.floors.push(floor);
                 }
             } else if *message.schema == *Schema::PoseInFrame.name() {
@@ -156,14 +155,11 @@ impl Stage {
         self.movers.iter().find(|mover| mover.shape == Shape::User(pseudonym))
     }
 
-    /// Floors on which the robot ever was; all if it is not shown.
+    /// Floors on which the robot ever was; none if it is not shown.
     #[must_use]
     pub fn visited(&self) -> Vec<usize> {
         let all = 0..self.floors.len();
-        match self.robot() {
-            Some(robot) => all.filter(|floor| robot.is_ever_on(*floor)).collect(),
-            None => all.collect(),
-        }
+        all.filter(|floor| self.robot().is_some_and(|robot| robot.is_ever_on(*floor))).collect()
     }
 }
 

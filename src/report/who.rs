@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use crate::trace::Recording;
-use crate::trace::schema::evidence;
 
 /// Names of users, goals and emergencies.
 #[derive(Clone, Debug, Default)]
@@ -14,16 +13,17 @@ pub struct Who {
 }
 
 impl Who {
-    /// The names in a recording, with the names of the specification's goals and emergencies.
+    /// The names in a recording.
     #[must_use]
-    pub fn of(recording: &Recording, specification: Option<&evidence::Specification>) -> Self {
+    pub fn of(recording: &Recording) -> Self {
         let mut users: BTreeMap<u32, String> = BTreeMap::new();
         for participant in &recording.participants {
-            let name = if participant.person.is_empty() { &participant.name } else { &participant.person };
+            let name = if participant.name.is_empty() { &participant.person } else { &participant.name };
             if !name.is_empty() {
                 users.insert(participant.user, name.clone());
             }
         }
+        let specification = recording.header.specification.as_ref();
         let goals = specification.map(|specification| &specification.goals);
         let emergencies = specification.map(|specification| &specification.emergencies);
         Self {

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::super::decision::{Act, Decision, Negotiated, Negotiation, Party, Round, Why};
+use super::super::decision::{Act, Decision, Negotiated, Negotiation, Party, Round, Welfare, Why};
 use super::super::page::Page;
 use super::floor_map::tint;
 use crate::run::clock;
@@ -36,21 +36,72 @@ fn article(decision: &Decision) -> Markup {
                             (table(decision, nth, negotiation))
                         }
                     }
+                    (sections(decision))
                 }
             }
         }
     }
 }
 
+/// What else the explanation says.
+fn sections(decision: &Decision) -> Markup {
+    html! {
+        @for section in &decision.sections {
+            h4 { (section.title) }
+            ul { @for sentence in &section.sentences { li { (sentence) } } }
+        }
+    }
+}
+
+/// Welfare as bars, each with its number.
+fn worth(negotiated: &Negotiated, welfare: &Welfare) -> Markup {
+    let best = welfare.of_serving.iter().map(|(.., worth)| *worth).max().unwrap_or(0);
+    html! {
+        h4 { "What serving whom is worth to all of them together" }
+        table.welfare {
+            caption { "Ranks of everybody, summed over the complete offer of who is served" }
+            thead { tr { th scope="col" { "Serving" } th scope="col" { "Worth" } } }
+            tbody {
+                @for (user, name, worth) in &welfare.of_serving {
+                    @let served = negotiated.parties.iter().any(|party| party.user == *user && party.served);
+                    tr {
+                        th scope="row" {
+                            (name)
+                            @if served { " " span.tag.decision { "served" } }
+                            @if *worth == best { " " span.tag.best { "best" } }
+                        }
+                        td class=(tint(*user)) {
+                            span.amount { (worth) }
+                            svg.bar viewBox="0 0 100 14" preserveAspectRatio="none" aria-hidden="true" {
+                                rect.own x="0" y="2" width=(share(*worth, best)) height="10" {}
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        p {
+            @if welfare.regret == 0 { "Nobody else’s request is worth more." }
+            @else { "The best is worth " (welfare.regret) " more than what was decided." }
+        }
+    }
+}
+
+/// In percent.
+fn share(number: u64, most: u64) -> u64 {
+    number.saturating_mul(100).checked_div(most).unwrap_or(0)
+}
+
 fn negotiations(decision: &Decision, negotiated: &Negotiated) -> Markup {
     html! {
-        p.reason { (negotiated.reason) }
         ul.parties {
             @for (nth, party) in negotiated.parties.iter().enumerate() { (one_party(nth, party)) }
         }
         @for (nth, negotiation) in (1_usize..).zip(&negotiated.negotiations) {
             (table(decision, nth, negotiation))
         }
+        @if let Some(welfare) = &negotiated.welfare { (worth(negotiated, welfare)) }
+        (sections(decision))
         p.variant { "Protocol variant " code { (negotiated.variant) } ", policy " code { (negotiated.policy) } "." }
     }
 }
@@ -153,12 +204,11 @@ fn answer(round: &Round, verdict: Verdict) -> Markup {
 /// What the offer is worth to its receiver, against the receiver's own case.
 fn bar(receiver: &str, value: u64, threshold: u64) -> Markup {
     let most = value.max(threshold).max(1);
-    let share = |number: u64| number.saturating_mul(100).checked_div(most).unwrap_or(0);
     html! {
         span { b { (value) } " to " (receiver) ", whose own case is " b { (threshold) } }
         svg.bar viewBox="0 0 100 14" preserveAspectRatio="none" aria-hidden="true" {
-            rect.value.more[value > threshold] x="0" y="0" width=(share(value)) height="6" {}
-            rect.threshold x="0" y="8" width=(share(threshold)) height="6" {}
+            rect.value.more[value > threshold] x="0" y="0" width=(share(value, most)) height="6" {}
+            rect.threshold x="0" y="8" width=(share(threshold, most)) height="6" {}
         }
     }
 }

@@ -7,9 +7,8 @@ use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest as _, Sha256};
 
-use super::super::decision::Why;
 use super::super::page::Page;
-use super::{decision, player, timeline};
+use super::{checks, decision, facts, player, timeline};
 use crate::run::clock;
 
 const STYLE: &str = include_str!("style.css");
@@ -46,6 +45,7 @@ pub(super) fn document(page: &Page) -> Markup {
                     (answers(page))
                     (player::section(page))
                     (decision::section(page))
+                    (checks::section(page))
                     (about(page))
                 }
                 footer {
@@ -67,11 +67,16 @@ fn masthead(page: &Page) -> Markup {
             p.kicker { "Selfneg report" }
             h1 { (page.title) }
             p.lede { "A recording of " (length(page.until)) " with " (decisions) "." }
+            p.status { a href="#checks" { "Audit" } " " (checks::badge(page.audit.status)) " " (checks::meaning(page.audit.status)) }
+            @if page.personal {
+                p.personal { b { "This page holds personal data." } " Give it to nobody who may not read the trace." }
+            }
             nav aria-label="On this page" {
                 ul {
                     li { a href="#answers" { "What was decided" } }
                     li { a href="#run" { "What happened" } }
                     li { a href="#decisions" { "Round by round" } }
+                    li { a href="#checks" { "What was checked" } }
                     li { a href="#about" { "The trace" } }
                 }
             }
@@ -100,15 +105,12 @@ fn answers(page: &Page) -> Markup {
                     @for decision in &page.decisions {
                         li {
                             p.headline {
-                                a href={ "#decision-" (decision.number) } {
-                                    "At " (clock(decision.at)) " " (decision.headline)
-                                }
-                                "."
+                                @if decision.question.is_empty() { (clock(decision.at)) " – " (decision.headline) }
+                                @else { (decision.question) }
                             }
-                            @match &decision.why {
-                                Why::Negotiated(negotiated) => p { (negotiated.reason) },
-                                Why::Emergency(emergency) => p { (emergency.evidence) },
-                            }
+                            p { @for sentence in &decision.answer { (sentence) " " } }
+                            @if let Some(change) = &decision.smallest_change { p { (change) } }
+                            p { a href={ "#decision-" (decision.number) } { "Decision " (decision.number) " round by round" } }
                         }
                     }
                 }
@@ -121,17 +123,12 @@ fn about(page: &Page) -> Markup {
     html! {
         section id="about" aria-labelledby="about-title" {
             h2 id="about-title" { "The trace" }
-            dl.facts {
-                @for fact in &page.facts {
-                    div { dt { (fact.name) } dd { (fact.value) } }
-                }
-            }
+            (facts(&page.facts))
             h3 { "What this page does not show" }
+            @if let Some(missing) = &page.missing { p { (missing.why) } }
             ul {
-                @for missing in &page.missing {
-                    li { b { (missing.what) } ": " (missing.why) }
-                }
-                li { "Whether what the robot was told is true: a trace says what it was told, and what it did then." }
+                @if let Some(missing) = &page.missing { @for what in &missing.what { li { (what) } } }
+                li { "whether what the robot was told is true: a trace says what it was told, and what it did then" }
             }
         }
     }

@@ -18,11 +18,10 @@ const PERSON: f64 = 0.25;
 /// Marks closer than this share a disc, in metres.
 const APART: f64 = 0.8;
 
-/// All floors on which the robot was.
+/// All floors on which the robot was; an empty building tells nothing.
 pub(super) fn floors(page: &Page, moments: &[KeyMoment]) -> Markup {
-    let visited = page.stage.visited();
     html! {
-        @for number in visited {
+        @for number in page.stage.visited() {
             @if let Some(floor) = page.stage.floors.get(number) {
                 (figure(page, number, floor, moments))
             }
@@ -34,8 +33,11 @@ pub(super) fn floors(page: &Page, moments: &[KeyMoment]) -> Markup {
                 span { "pins: where it was at the numbered moments" }
             }
         }
-        @if page.stage.floors.is_empty() {
-            p { "This trace holds no map that could be drawn." }
+        @if page.stage.visited().is_empty() {
+            div.hidden {
+                p { b { "Where the robot and people were is not shown." } }
+                @if let Some(missing) = &page.missing { p { (missing.why) } }
+            }
         }
     }
 }
@@ -49,14 +51,11 @@ fn figure(page: &Page, number: usize, floor: &Floor, moments: &[KeyMoment]) -> M
     let layers = Layers::of(floor);
     let movers = page.stage.movers.iter().filter(|mover| mover.is_ever_on(number));
     let marks = marks(page, number, moments);
-    let shown = page.stage.robot().is_some();
     html! {
         figure.floor data-floor=(number) {
             figcaption { (name) }
             svg viewBox={ "0 0 " (unit(frame.width)) " " (unit(frame.height)) } role="img"
-                aria-label={ (name) " from above"
-                    @if shown { ", with the way of the robot and everybody where they were. The timeline tells the same in words." }
-                    @else { ". The trace does not show where the robot was." } } {
+                aria-label={ (name) " from above, with the way of the robot and everybody where they were. The timeline tells the same in words." } {
                 path.free d=(layers.path(floor, &frame, Layer::Free)) {}
                 path.furniture d=(layers.path(floor, &frame, Layer::Furniture)) {}
                 path.wall d=(layers.path(floor, &frame, Layer::Wall)) {}

@@ -1,5 +1,6 @@
 //! Renders a page as HTML. All text goes through `maud`, which escapes it.
 
+mod checks;
 mod decision;
 mod document;
 mod floor_map;
@@ -8,7 +9,9 @@ mod timeline;
 
 use std::time::Duration;
 
-use super::page::Page;
+use maud::{Markup, html};
+
+use super::page::{Fact, Page};
 
 impl Page {
     /// The page as one HTML file.
@@ -21,4 +24,12 @@ impl Page {
 /// A time for a script: seconds with two decimals.
 fn seconds(at: Duration) -> String {
     format!("{}.{:02}", at.as_secs(), at.subsec_millis() / 10)
+}
+
+fn facts(facts: &[Fact]) -> Markup {
+    html! {
+        @if !facts.is_empty() {
+            dl.facts { @for fact in facts { div { dt { (fact.name) } dd { (fact.value) } } } }
+        }
+    }
 }
