@@ -57,7 +57,34 @@ fn an_existing_decision_is_replaced_whole() {
     let mut files: Vec<_> =
         fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     files.sort();
-    assert_eq!(files, ["decision.json", "report.html", "run.svg", "trace.mcap"]);
+    let keys = ["auditor.key", "auditor.pub", "robot.key", "robot.pub"];
+    assert_eq!(files, [&keys[..2], &["decision.json", "report.html"], &keys[2..], &["run.svg", "trace.mcap"]].concat());
+}
+
+#[test]
+fn keys_that_are_there_are_used_again_and_missing_public_ones_made() {
+    let folder = tempfile::tempdir().unwrap();
+    demo_in(folder.path(), &["--out", "."]);
+    let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    let names = ["auditor.key", "auditor.pub", "robot.key", "robot.pub"];
+    let keys = names.map(read);
+    for name in ["auditor.pub", "robot.pub"] {
+        fs::remove_file(folder.path().join(name)).unwrap();
+    }
+    demo_in(folder.path(), &["--out", "."]);
+    assert_eq!(names.map(read), keys);
+    let other = tempfile::tempdir().unwrap();
+    selfneg().args(["keygen", "--out"]).arg(other.path()).assert().success();
+    for name in ["auditor.pub", "robot.pub"] {
+        let mine = read(name);
+        fs::copy(other.path().join(name), folder.path().join(name)).unwrap();
+        let told = refusal(selfneg().current_dir(folder.path()).args(["demo", "--out", "."]), folder.path());
+        assert!(told.contains(&format!("{name}: it is not the public key of ")), "{told}");
+        fs::write(folder.path().join(name), mine).unwrap();
+    }
+    fs::write(folder.path().join("robot.key"), "no key").unwrap();
+    let told = refusal(selfneg().current_dir(folder.path()).args(["demo", "--out", "."]), folder.path());
+    assert!(told.contains("robot.key: not a robot's private key"), "{told}");
 }
 
 #[test]

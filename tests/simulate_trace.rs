@@ -1,5 +1,5 @@
 //! `selfneg simulate --trace` and the demo's trace: complete, replayed without a difference,
-//! the same twice, and readable when the run was killed.
+//! the same twice, and readable when the run was killed, sealed or not.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,
@@ -16,7 +16,8 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use scaffold::program::selfneg;
-use selfneg::trace::Recording;
+use selfneg::seal::{AuditorKey, RobotPublicKey, SealState};
+use selfneg::trace::{PersonalPart, Recording, open};
 use serde_json::Value;
 
 fn scenario(name: &str) -> PathBuf {
@@ -42,7 +43,7 @@ fn every_scenario_leaves_a_trace_that_replays_and_is_the_same_twice() {
             let output = selfneg()
                 .arg("simulate")
                 .arg(scenario(name))
-                .args(["--json", "--trace"])
+                .args(["--json", "--plaintext", "--trace"])
                 .arg(trace)
                 .assert()
                 .success()
@@ -60,7 +61,14 @@ fn every_scenario_leaves_a_trace_that_replays_and_is_the_same_twice() {
 fn the_demo_leaves_a_trace_of_its_decision() {
     let folder = tempfile::tempdir().unwrap();
     selfneg().args(["demo", "--out"]).arg(folder.path()).assert().success();
-    assert_eq!(complete(&folder.path().join("trace.mcap")).decisions(), 1);
+    let key = AuditorKey::parse_all(&fs::read_to_string(folder.path().join("auditor.key")).unwrap()).unwrap();
+    let opened = open(&fs::read(folder.path().join("trace.mcap")).unwrap(), &key).unwrap();
+    let replay = opened.recording.replay().unwrap();
+    assert_eq!((opened.recording.decisions(), &opened.recording.damage, replay.difference), (1, &None, None));
+    let SealState::Signed(report) = opened.seal else { panic!("{:?}", opened.seal) };
+    assert_eq!((report.covered_decisions, report.complete, &report.faults[..]), (1, true, &[][..]));
+    let robot = fs::read_to_string(folder.path().join("robot.pub")).unwrap();
+    assert_eq!(report.key, RobotPublicKey::from_pem(&robot).unwrap());
 }
 
 /// The program is killed, without a chance to clean up, once the first decision can be read:
@@ -78,27 +86,36 @@ fn a_killed_run_leaves_the_decisions_made() {
         .replace("\"../mall", &format!("\"{}/mall", examples.display()));
     let (file, trace) = (folder.path().join("hurried.toml"), folder.path().join("killed.mcap"));
     fs::write(&file, text).unwrap();
+    selfneg().current_dir(folder.path()).arg("keygen").assert().success();
     let mut run = Command::new(assert_cmd::cargo::cargo_bin!("selfneg"))
         .arg("simulate")
         .arg(&file)
-        .args(["--realtime", "--trace"])
+        .args(["--realtime", "--sign", "robot.key", "--seal", "auditor.pub", "--trace"])
         .arg(&trace)
+        .current_dir(folder.path())
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let readable = || fs::read(&trace).ok().and_then(|bytes| Recording::read(&bytes).ok());
+    let key = AuditorKey::parse_all(&fs::read_to_string(folder.path().join("auditor.key")).unwrap()).unwrap();
+    let readable = || fs::read(&trace).ok().and_then(|bytes| open(&bytes, &key).ok());
     let began = Instant::now();
-    while readable().is_none_or(|recording| recording.decisions() == 0) {
+    while readable().is_none_or(|opened| opened.recording.decisions() == 0) {
         assert!(began.elapsed() < Duration::from_secs(60), "no decision to be read within a minute");
         std::thread::sleep(Duration::from_millis(50));
     }
     run.kill().unwrap();
     run.wait().unwrap();
-    let recording = readable().unwrap();
+    let opened = readable().unwrap();
+    let recording = &opened.recording;
     assert_eq!(recording.decisions(), 1);
     assert!(!recording.is_complete());
-    assert!(recording.replay().unwrap().difference.is_none());
+    assert_eq!((opened.privacy, recording.participants.len()), (PersonalPart::Open, 2));
+    let replay = recording.replay().unwrap();
+    assert!(replay.difference.is_none());
+    assert!(replay.outputs.iter().any(|output| format!("{output:?}").contains("Decided {")));
+    let SealState::Signed(report) = opened.seal else { panic!("{:?}", opened.seal) };
+    assert_eq!((report.covered_decisions, report.complete, &report.faults[..]), (1, false, &[][..]));
 }
 
 /// A trace is not emptied for a scenario that cannot be run, and a trace that cannot be

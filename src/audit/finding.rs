@@ -148,10 +148,20 @@ impl Log {
         at: Place,
         what: impl Into<String>,
     ) {
+        self.not_held(property);
+        self.find(status, at, what);
+    }
+
+    /// The same without a finding of its own.
+    pub(super) fn not_held(&mut self, property: Property) {
         if let Some((checked, broken)) = self.tallies.get_mut(property.place()) {
             *checked = checked.saturating_add(1);
             *broken = broken.saturating_add(1);
         }
-        self.find(status, at, what);
     }
+}
+
+/// So many conditions, in words.
+pub(super) fn conditions(number: u64) -> String {
+    if number == 1 { "1 condition".to_owned() } else { format!("{number} conditions") }
 }

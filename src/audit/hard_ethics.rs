@@ -10,8 +10,15 @@ use crate::trace::schema::evidence::{
 
 /// Checks all turns of a trace.
 pub(super) fn check(header: &Header, turns: &[Turn<'_>], log: &mut Log) {
-    let mut watch =
-        Watch { header, waiting: Vec::new(), pursued: Pursued::Nothing, safe: true, over: false, log };
+    let mut watch = Watch {
+        header,
+        waiting: Vec::new(),
+        pursued: Pursued::Nothing,
+        safe: true,
+        over: false,
+        told: Vec::new(),
+        log,
+    };
     for turn in turns {
         watch.turn(turn);
     }
@@ -35,6 +42,8 @@ struct Watch<'a> {
     safe: bool,
     /// The mission is ending: nothing is acted on any more.
     over: bool,
+    /// Those waiting of which it was told already that they should not.
+    told: Vec<u32>,
     log: &'a mut Log,
 }
 
@@ -184,6 +193,10 @@ impl Watch<'_> {
             Pursued::Goal | Pursued::Nothing => true,
         };
         if graver && self.safe && !self.over {
+            if self.told == self.waiting {
+                return;
+            }
+            self.told.clone_from(&self.waiting);
             self.broken(at, "a certain emergency waits, though the robot could act on it");
         } else {
             self.log.held(Property::HardEthics);

@@ -7,7 +7,7 @@
 
 use selfneg_core::{Options, QuitRule, Ruling, Side, TieRule};
 
-use super::finding::{Log, Place};
+use super::finding::{Log, Place, conditions};
 use super::property::Property;
 use crate::case::{RecordedEvent, RecordedNegotiation, RecordedRound, Worth};
 use crate::mission::UserId;
@@ -256,7 +256,7 @@ impl<'n> Walk<'n> {
     fn offer(&mut self, sender: Side, depth: u64) -> Result<(), Wrong> {
         let expected = self.made.of(sender).saturating_add(1);
         if depth != expected {
-            let what = format!("an offer of {depth} conditions, where one of {expected} must be");
+            let what = format!("an offer of {}, where one of {expected} must be", conditions(depth));
             return Err((Property::OneDisclosure, what));
         }
         *self.made.of_mut(sender) = depth;

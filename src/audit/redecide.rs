@@ -4,7 +4,7 @@ use selfneg_core::{Activation, Options, Side};
 use selfneg_model::{Decided, Impacts, Regret};
 use serde::Serialize;
 
-use super::finding::{Log, Place};
+use super::finding::{Log, Place, conditions};
 use super::property::Property;
 use crate::binding::BoundUser;
 use crate::case::{
@@ -176,7 +176,12 @@ fn difference(
     let expected = match again.event {
         Event::Quit => format!("user {} quits", sender.0),
         Event::Offer { depth, ruling, .. } => {
-            format!("user {} offers {depth} conditions, {}", sender.0, ruled(ruling))
+            format!(
+                "user {} offers {}, {}",
+                sender.0,
+                conditions(u64::try_from(depth).unwrap_or(u64::MAX)),
+                ruled(ruling)
+            )
         }
     };
     let what = tell(recorded);
@@ -204,7 +209,7 @@ fn tell(round: &RecordedRound) -> String {
         RecordedEvent::Unknown => format!("user {sender} does nothing"),
         RecordedEvent::Offer { depth, verdict, .. } => {
             let verdict = verdict.map_or("without a verdict", ruled);
-            format!("user {sender} offers {depth} conditions, {verdict}")
+            format!("user {sender} offers {}, {verdict}", conditions(depth))
         }
     }
 }

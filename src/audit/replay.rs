@@ -3,14 +3,21 @@
 //! The mission's state depends on the events alone, never on what is recorded of its replies;
 //! so one false record does not hide what comes after it.
 
-use super::finding::{Log, Place};
+use super::finding::{Log, Place, conditions};
 use super::property::Property;
 use super::status::Status;
 use super::turn::Turn;
 use crate::mission::{Mission, MissionRules, Output};
-use crate::trace::schema::evidence::{Verdict, record::Record, round};
+use crate::trace::schema::evidence::{self, Verdict, record::Record, round, served};
 use crate::trace::schema::personal;
 use crate::trace::{EncodedOutput, Encoder, Entry, Open, Recording, ReplayError, Step, decode_event};
+
+/// Of the replies to one event so many differences are told one by one.
+const MOST_OF_A_TURN: u64 = 2;
+
+/// Events with differences beyond so many are counted only: a run that went another way does so
+/// to its end.
+const MOST_TURNS: u64 = 8;
 
 /// How far the mission could be run again.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,6 +42,7 @@ pub(super) fn check(
     let (mut mission, first) = Mission::new(rules);
     let mut encoder = Encoder::default();
     let mut first = Some(first);
+    let mut differing = 0_u64;
     for turn in turns {
         let outputs = match turn.event {
             None => first.take().unwrap_or_default(),
@@ -48,8 +56,15 @@ pub(super) fn check(
                 }
             }
         };
-        let comparison = Comparison { recording, erased };
-        comparison.compare(turn, &outputs, &mut encoder, log);
+        let told = if differing < MOST_TURNS { MOST_OF_A_TURN } else { 0 };
+        let comparison = Comparison { recording, erased, told };
+        if !comparison.compare(turn, &outputs, &mut encoder, log) {
+            differing = differing.saturating_add(1);
+        }
+    }
+    if let Some(more) = differing.checked_sub(MOST_TURNS).filter(|&more| more > 0) {
+        let what = format!("the replies to {more} more events are not as recorded");
+        log.find(Property::Replay.status(), Place::WHOLE, what);
     }
     Extent::Whole
 }
@@ -57,22 +72,31 @@ pub(super) fn check(
 struct Comparison<'r> {
     recording: &'r Recording,
     erased: bool,
+    /// How many differences to tell.
+    told: u64,
 }
 
 impl Comparison<'_> {
     /// Holds a turn's replies against the mission's. Where they part, one more or one less
     /// here or there is looked for, so that a reply left out is not taken for many changed.
-    fn compare(&self, turn: &Turn<'_>, outputs: &[Output], encoder: &mut Encoder, log: &mut Log) {
+    fn compare(&self, turn: &Turn<'_>, outputs: &[Output], encoder: &mut Encoder, log: &mut Log) -> bool {
         let again: Vec<EncodedOutput> = outputs.iter().map(|output| encoder.output(output)).collect();
         let event_at = turn.event.map_or(Place::WHOLE, |event| Place::entry(event.index, event.at));
         let (mut recorded, mut again) = (turn.replies, again.as_slice());
         let mut at = event_at;
+        let mut differences = 0_u64;
+        let mut broken = |log: &mut Log, at, recorded: Option<&Open>, again: Option<&Open>| {
+            differences = differences.saturating_add(1);
+            if differences <= self.told {
+                broken(log, at, recorded, again);
+            }
+        };
         loop {
             match (recorded, again) {
-                ([], []) => return,
+                ([], []) => break,
                 ([], [missing, rest @ ..]) => {
                     if turn.may_be_cut {
-                        return;
+                        break;
                     }
                     broken(log, at, None, Some(&missing.open));
                     again = rest;
@@ -103,6 +127,15 @@ impl Comparison<'_> {
                 }
             }
         }
+        if let Some(more) = differences.checked_sub(self.told).filter(|&more| more > 0) {
+            if self.told > 0 {
+                let what = format!("{more} more of the replies to this event are not as recorded");
+                log.broken(Property::Replay, event_at, what);
+            } else {
+                log.not_held(Property::Replay);
+            }
+        }
+        differences == 0
     }
 
     /// Whether a reply is the recorded one, but for its number, which one reply too few or too
@@ -115,7 +148,7 @@ impl Comparison<'_> {
         let again: Vec<personal::Reply> = output
             .personal
             .iter()
-            .map(|(_, reply)| personal::Reply { index: entry.index, ..reply.clone() })
+            .map(|(_, reply)| personal::Reply { index: entry.index, ..*reply })
             .collect();
         if self.erased || entry.index >= self.recording.personal_until {
             personal.iter().all(|reply| again.contains(reply))
@@ -141,12 +174,11 @@ fn renumbered(open: &Open, index: u64) -> Open {
     open
 }
 
-/// A reply of the negotiation itself makes the decision wrong; any other is a violation.
+/// Where a round, an outcome or a decision has another content, the decision is wrong. Where
+/// one side has none, the run went another way, which is a violation.
 fn broken(log: &mut Log, at: Place, recorded: Option<&Open>, again: Option<&Open>) {
-    let status = match [recorded, again].into_iter().flatten().any(is_of_decision) {
-        true => Status::WrongDecision,
-        false => Property::Replay.status(),
-    };
+    let both = recorded.is_some_and(is_of_decision) && again.is_some_and(is_of_decision);
+    let status = if both { Status::WrongDecision } else { Property::Replay.status() };
     let what = match (recorded.map(tell), again.map(tell)) {
         (Some(recorded), Some(again)) if recorded == again => {
             format!("run again, the mission replies otherwise: {recorded}, but not in every part of it")
@@ -195,7 +227,7 @@ fn tell(open: &Open) -> String {
                             Verdict::Hold => "held",
                             Verdict::Unspecified => "without a verdict",
                         };
-                        format!("offers {} conditions, {verdict}", offer.depth)
+                        format!("offers {}, {verdict}", conditions(offer.depth))
                     }
                     Some(round::Round::Quit(_)) => "quits".to_owned(),
                     None => "does nothing".to_owned(),
@@ -224,8 +256,39 @@ fn tell(open: &Open) -> String {
             Some(Record::Wiped(wiped)) => {
                 format!("a wipe of user {} that leaves {} bytes", wiped.user, wiped.left)
             }
+            Some(Record::Lifecycle(change)) => {
+                let (component, from, to) = (change.component(), change.from(), change.to());
+                format!("{component:?} of {} from {from:?} to {to:?}", user(change.user))
+            }
+            Some(Record::GoalStarted(started)) => {
+                format!("goal {} begins for {}", started.goal, served_in(started.served.as_ref()))
+            }
+            Some(Record::GoalEnded(ended)) => {
+                let end = ended.end();
+                format!("goal {} of {} ends ({end:?})", ended.goal, served_in(ended.served.as_ref()))
+            }
+            Some(Record::Deferred(deferred)) => {
+                let why = deferred.why();
+                format!("user {} is put off ({why:?}) (deferral {})", deferred.user, deferred.times)
+            }
+            Some(Record::EmergencyDecided(known)) => {
+                let evidence = known.evidence();
+                format!("an emergency of category {} ({evidence:?}) is certain", known.category)
+            }
+            Some(Record::EmergencyUnverified(known)) => {
+                let evidence = known.evidence();
+                format!("an emergency of category {} ({evidence:?}) is not certain", known.category)
+            }
             Some(record) => format!("the record {}", name_of(record)),
         },
+    }
+}
+
+fn served_in(served: Option<&evidence::Served>) -> String {
+    match served.and_then(|served| served.served.as_ref()) {
+        Some(served::Served::User(user)) => format!("user {user}"),
+        Some(served::Served::Emergency(category)) => format!("an emergency of category {category}"),
+        None => "nobody".to_owned(),
     }
 }
 

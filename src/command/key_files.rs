@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
+use std::slice;
 
 use zeroize::Zeroizing;
 
@@ -125,12 +126,12 @@ pub(super) fn of_folder(folder: &Path) -> Result<(RobotKey, AuditorPublicKey), C
         key
     };
     let recipient = if auditor.exists() {
-        let public = auditor_keys(&[auditor.clone()])?.first().map(AuditorKey::public);
+        let public = auditor_keys(slice::from_ref(&auditor))?.first().map(AuditorKey::public);
         let public =
             public.ok_or_else(|| CommandError::Key { file: auditor.clone(), source: KeyError::Empty })?;
         if !auditor_pub.exists() {
             create_new(&auditor_pub, format!("{public}\n").as_bytes(), Readers::Anybody)?;
-        } else if !auditor_public_keys(&[auditor_pub.clone()])?.contains(&public) {
+        } else if !auditor_public_keys(slice::from_ref(&auditor_pub))?.contains(&public) {
             return differs(&auditor_pub, &auditor);
         }
         public

@@ -42,7 +42,8 @@ pub use redecision::Redecided;
 pub use told::{Section, Told};
 
 use crate::case::Case;
-use crate::trace::Recording;
+use crate::trace::schema::evidence::event::Event;
+use crate::trace::{Recording, Step};
 
 /// For whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -164,11 +165,11 @@ pub fn explain(
     if let (Some(asked), []) = (decision, wanted.as_slice()) {
         return Err(ExplainError::NoSuchDecision { asked, there });
     }
-    if let Audience::User(user) = audience
-        && !recording.header.participants.contains(&user)
-    {
-        let known = recording.header.participants.clone();
-        return Err(ExplainError::NoSuchUser { asked: user.to_string(), known });
+    if let Audience::User(user) = audience {
+        let known = users(recording);
+        if !known.contains(&user) {
+            return Err(ExplainError::NoSuchUser { asked: user.to_string(), known });
+        }
     }
     let explained: Vec<Explained> =
         wanted.into_iter().filter_map(|case| explain_case(recording, case, audience)).collect();
@@ -186,7 +187,6 @@ pub fn explain(
 pub fn pseudonym(recording: &Recording, asked: &str) -> Result<u32, ExplainError> {
     let named: Vec<u32> =
         recording.participants.iter().filter(|who| who.name == asked).map(|who| who.user).collect();
-    let known = || recording.header.participants.clone();
     match named.as_slice() {
         [one] => return Ok(*one),
         [] => {}
@@ -194,9 +194,25 @@ pub fn pseudonym(recording: &Recording, asked: &str) -> Result<u32, ExplainError
             return Err(ExplainError::SeveralUsers { asked: asked.to_owned(), known: several.to_vec() });
         }
     }
+    let known = users(recording);
     let number = asked.strip_prefix("user").map_or(asked, |rest| rest.trim_start_matches(['-', ' ']));
-    let found = number.parse().ok().filter(|user| recording.header.participants.contains(user));
-    found.ok_or_else(|| ExplainError::NoSuchUser { asked: asked.to_owned(), known: known() })
+    let found = number.parse().ok().filter(|user| known.contains(user));
+    found.ok_or_else(|| ExplainError::NoSuchUser { asked: asked.to_owned(), known })
+}
+
+/// Everybody whom the trace says to take part, or who asked for something.
+fn users(recording: &Recording) -> Vec<u32> {
+    let mut users = recording.header.participants.clone();
+    users.extend(recording.entries.iter().filter_map(|entry| match &entry.step {
+        Step::Event { open, .. } => match &open.event {
+            Some(Event::Request(request)) => Some(request.user),
+            _ => None,
+        },
+        Step::Reply { .. } => None,
+    }));
+    users.sort_unstable();
+    users.dedup();
+    users
 }
 
 fn explain_case(recording: &Recording, case: &Case, audience: Audience) -> Option<Explained> {

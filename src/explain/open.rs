@@ -250,3 +250,135 @@ fn other_order(recorded: &RecordedDecision) -> OtherOrder {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::{Path, PathBuf};
+    use std::time::Duration;
+
+    use selfneg_core::{Options, Rank, Side};
+
+    use super::*;
+    use crate::binding::{BoundRules, BoundUser, GoalChoice};
+    use crate::case::{RecordedEnd, RecordedRound};
+    use crate::input::{Rules, Truth, User, UserFiles};
+    use crate::precedence::{Decision, decide};
+    use crate::transcript::Event;
+
+    const NAMES: [&str; 3] = ["a", "b", "c"];
+
+    fn rules() -> BoundRules {
+        let all = NAMES.map(str::to_owned);
+        BoundRules::new(Rules {
+            activation: all.iter().map(|name| (name.clone(), vec![name.clone()])).collect(),
+            implications: vec![("goal".to_owned(), all.to_vec())],
+            activation_file: PathBuf::from("activation"),
+            implications_file: PathBuf::from("implications"),
+        })
+        .unwrap()
+    }
+
+    /// Every user: the true conditions in every order, each disposition ranked 0 or 1.
+    fn everybody(rules: &mut BoundRules) -> Vec<BoundUser> {
+        let mut orders: Vec<Vec<&str>> = vec![Vec::new()];
+        let mut at = 0;
+        while let Some(order) = orders.get(at).cloned() {
+            for name in NAMES.iter().filter(|name| !order.contains(name)) {
+                orders.push([order.as_slice(), &[name]].concat());
+            }
+            at += 1;
+        }
+        let mut users = Vec::new();
+        for order in &orders {
+            for ranks in 0..8_u8 {
+                let profile = NAMES.iter().enumerate();
+                let user = User {
+                    name: String::new(),
+                    profile: profile.map(|(d, name)| ((*name).to_owned(), Rank(ranks >> d & 1))).collect(),
+                    status: order.iter().map(|name| ((*name).to_owned(), Truth::True)).collect(),
+                    goal: Some("goal".to_owned()),
+                    location: "here".to_owned(),
+                    files: UserFiles::of_folder(Path::new("user")),
+                };
+                users.push(rules.bind(&user, &GoalChoice::OwnFile).unwrap());
+            }
+        }
+        users
+    }
+
+    /// The open record of a decision between users 1 and 2.
+    fn recorded(decision: &Decision) -> RecordedDecision {
+        let user = |place: usize| UserId(u32::try_from(place).unwrap() + 1);
+        let held = &decision.negotiations[0];
+        let round = |round: &crate::transcript::Round| RecordedRound {
+            index: 0,
+            at: Duration::ZERO,
+            number: round.number,
+            sender: if round.sender == Side::Current { UserId(1) } else { UserId(2) },
+            receiver: if round.sender == Side::Current { UserId(2) } else { UserId(1) },
+            event: match round.event {
+                Event::Quit => RecordedEvent::Quit,
+                Event::Offer { depth, ruling, .. } => RecordedEvent::Offer {
+                    depth: depth.try_into().unwrap(),
+                    verdict: Some(ruling),
+                    discloses: None,
+                    worth: None,
+                },
+            },
+        };
+        RecordedDecision {
+            decision: 1,
+            index: 0,
+            at: Duration::ZERO,
+            policy: Some(decision.policy),
+            options: Some(decision.options),
+            participants: vec![UserId(1), UserId(2)],
+            agreement: decision.agreement.map(user),
+            served: user(decision.served),
+            rounds: held.conclusion.rounds,
+            negotiations: vec![RecordedNegotiation {
+                index: 0,
+                at: Duration::ZERO,
+                current: UserId(1),
+                interrupting: UserId(2),
+                willingness: held.options.willingness.into(),
+                rounds: held.rounds.iter().map(round).collect(),
+                end: Some(RecordedEnd {
+                    index: 0,
+                    sides: (UserId(1), UserId(2)),
+                    winner: decision.agreement.map(user),
+                    rounds: held.conclusion.rounds,
+                    ending: held.conclusion.ending.name().to_owned(),
+                }),
+            }],
+        }
+    }
+
+    #[test]
+    fn what_is_said_of_the_other_order_is_so_for_all_pairs() {
+        let mut rules = rules();
+        let users = everybody(&mut rules);
+        let mut said = [0_u32; 3];
+        for tie in TieRule::ALL {
+            let options = Options { tie: *tie, ..Options::default() };
+            for first in &users {
+                for second in &users {
+                    let decided = |two: [&BoundUser; 2]| {
+                        decide(&rules, &two.map(Clone::clone), options, Policy::Published).unwrap()
+                    };
+                    let decision = decided([first, second]);
+                    let answer = other_order(&recorded(&decision));
+                    let same_person = decided([second, first]).served != decision.served;
+                    match answer {
+                        OtherOrder::Same => assert!(same_person, "{decision:#?}"),
+                        OtherOrder::Other => assert!(!same_person, "{decision:#?}"),
+                        OtherOrder::NotKnown => {}
+                    }
+                    said[answer as usize] += 1;
+                }
+            }
+        }
+        assert_eq!(said.iter().sum::<u32>(), 3 * 128 * 128);
+        assert!(said.iter().all(|&count| count > 1_000), "{said:?}");
+    }
+}

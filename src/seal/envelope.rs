@@ -117,7 +117,8 @@ mod tests {
         fn what_is_sealed_opens(content in prop::collection::vec(any::<u8>(), 0..3_000)) {
             let key = AuditorKey::generate();
             let sealed = seal(&content, &[key.public()]).unwrap();
-            prop_assert_eq!(open(&sealed, &[key]).unwrap().as_slice(), content);
+            let opened = open(&sealed, &[key]).unwrap();
+            prop_assert_eq!(opened.as_slice(), content);
         }
     }
 

@@ -14,6 +14,7 @@ use crate::trace::{FORMAT_RECORD, Message, Note, Scan, is_decision};
 
 /// Whether a trace is signed, and how well.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[expect(clippy::large_enum_variant, reason = "there is one a trace")]
 pub enum SealState {
     /// It does not claim to be.
     Unsigned,

@@ -71,9 +71,9 @@ pub struct Channel {
 
 impl Channel {
     /// A channel of messages and a schema in protobuf.
-    pub(super) fn protobuf(topic: &str, schema: &str, schema_data: Vec<u8>) -> Self {
+    pub(super) fn protobuf(topic: &str, schema: &str, schema_data: &[u8]) -> Self {
         let metadata = BTreeMap::new();
-        let digest = channel_digest(topic, PROTOBUF, &metadata, (schema, PROTOBUF, &schema_data));
+        let digest = channel_digest(topic, PROTOBUF, &metadata, (schema, PROTOBUF, schema_data));
         Self {
             topic: topic.into(),
             encoding: PROTOBUF.to_owned(),
@@ -273,7 +273,7 @@ impl<'a> Reader<'a> {
         }
         let after = self.at;
         self.magic(malformed(after, "no magic bytes after the footer"))
-            .map_err(|error| if self.bytes.len() == after { self.truncated() } else { error })?;
+            .map_err(|error| if after >= self.zeros { self.truncated() } else { error })?;
         if self.at < self.bytes.len() {
             return Err(malformed(self.at, "there is more after the end"));
         }

@@ -1,6 +1,7 @@
 //! The `.proto` files as Rust types and as descriptors.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
 
 use prost::Message as _;
 use prost_types::FileDescriptorSet;
@@ -150,9 +151,17 @@ impl Schema {
     /// The `FileDescriptorSet` of its file and of all that this imports, as MCAP wants it.
     /// Comments are left out.
     #[must_use]
-    pub fn descriptors(self) -> Vec<u8> {
-        // Made by the same build: it decodes, and the tests decode every answer again.
-        let all = FileDescriptorSet::decode(DESCRIPTORS).unwrap_or_default();
+    pub fn descriptors(self) -> &'static [u8] {
+        static ALL: OnceLock<BTreeMap<Schema, Vec<u8>>> = OnceLock::new();
+        let all = ALL.get_or_init(|| {
+            // Made by the same build: it decodes, and the tests decode every answer again.
+            let set = FileDescriptorSet::decode(DESCRIPTORS).unwrap_or_default();
+            Self::ALL.into_iter().map(|schema| (schema, schema.files_of(&set).encode_to_vec())).collect()
+        });
+        all.get(&self).map(Vec::as_slice).unwrap_or_default()
+    }
+
+    fn files_of(self, all: &FileDescriptorSet) -> FileDescriptorSet {
         let mut wanted = BTreeSet::from([self.file().to_owned()]);
         // Files come after what they import, so that one pass from the end finds all.
         for file in all.file.iter().rev() {
@@ -160,9 +169,10 @@ impl Schema {
                 wanted.extend(file.dependency.iter().cloned());
             }
         }
-        let file = all.file.into_iter().filter(|file| wanted.contains(file.name()));
-        let file = file.map(|file| prost_types::FileDescriptorProto { source_code_info: None, ..file });
-        FileDescriptorSet { file: file.collect() }.encode_to_vec()
+        let file = all.file.iter().filter(|file| wanted.contains(file.name()));
+        let file =
+            file.map(|file| prost_types::FileDescriptorProto { source_code_info: None, ..file.clone() });
+        FileDescriptorSet { file: file.collect() }
     }
 }
 
@@ -178,7 +188,7 @@ mod tests {
     #[test]
     fn every_schema_is_in_its_descriptors_with_all_that_it_imports() {
         for schema in Schema::ALL {
-            let set = FileDescriptorSet::decode(schema.descriptors().as_slice()).unwrap();
+            let set = FileDescriptorSet::decode(schema.descriptors()).unwrap();
             let (package, name) = schema.name().rsplit_once('.').unwrap();
             let holds = set.file.iter().any(|file| {
                 file.package() == package && file.message_type.iter().any(|message| message.name() == name)

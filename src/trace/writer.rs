@@ -208,13 +208,13 @@ impl<W: Write> TraceWriter<W> {
                 let id = match self.schemas.get(&schema) {
                     Some(id) => *id,
                     None => {
-                        let id = writer.add_schema(name, PROTOBUF, &descriptors).map_err(into_io)?;
+                        let id = writer.add_schema(name, PROTOBUF, descriptors).map_err(into_io)?;
                         self.schemas.insert(schema, id);
                         id
                     }
                 };
                 let channel = writer.add_channel(id, &topic.name, PROTOBUF, &BTreeMap::new());
-                let described = (name, PROTOBUF, descriptors.as_slice());
+                let described = (name, PROTOBUF, descriptors);
                 let digest = channel_digest(&topic.name, PROTOBUF, &BTreeMap::new(), described);
                 let channel = (channel.map_err(into_io)?, digest);
                 self.channels.insert(topic, channel);

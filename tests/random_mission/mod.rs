@@ -290,3 +290,11 @@ impl Stage<'_> {
         }
     }
 }
+
+/// The same trace without everything personal.
+pub(crate) fn without_personal(bytes: &[u8]) -> Vec<u8> {
+    let mut pieces = super::rewriting::Pieces::of(bytes);
+    pieces.messages.retain(|message| !message.topic.starts_with(selfneg::trace::PERSONAL));
+    pieces.renumber();
+    pieces.to_bytes()
+}

@@ -1,4 +1,5 @@
-// Opens reports in headless Chromium and uses them: usage: node check.mjs OUT REPORT.html...
+// Opens reports in headless Chromium and uses them: node check.mjs OUT REPORT.html...
+// or makes a picture of one: node check.mjs --picture OUT.png REPORT.html
 // Every check that fails is one line; the exit code is 1 then. Screenshots go to OUT.
 import { createRequire } from "node:module";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -199,6 +200,13 @@ async function withoutMotion(report) {
   await opened.close();
 }
 
+if (out === "--picture") {
+  const [picture, report] = reports;
+  const { page, close } = await open(report, { viewport: { width: 1120, height: 1270 }, colorScheme: "light" });
+  await page.screenshot({ path: picture });
+  await close();
+  process.exit(0);
+}
 mkdirSync(out, { recursive: true });
 for (const report of reports) {
   for (const size of Object.keys(sizes)) {

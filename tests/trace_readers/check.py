@@ -1,6 +1,7 @@
 """Opens a trace with Python's mcap and decodes every message by the schemas in the file.
 
-check.py TRACE: a complete trace. check.py --cut TRACE: one without its end.
+check.py TRACE: a complete trace with what is personal in the open. check.py --cut TRACE: one
+without its end. check.py --sealed TRACE: a complete one, sealed and signed.
 """
 
 import collections
@@ -98,7 +99,31 @@ def cut(path):
     expect(False, "the cut is seen")
 
 
+def sealed(path):
+    counts, bare, subjects = collections.Counter(), [], set()
+    with open(path, "rb") as file:
+        reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        for schema, channel, message, decoded in reader.iter_decoded_messages(log_time_order=False):
+            counts[channel.topic] += 1
+            expect(decoded.DESCRIPTOR.full_name == schema.name, f"{channel.topic} decodes as its schema")
+            if channel.topic.startswith("/personal/"):
+                bare.append(channel.topic)
+            if schema.name == "selfneg.v1.Sealed":
+                subjects.add(decoded.subject)
+                expect(decoded.ciphertext.startswith(b"age-encryption.org/v1\n"), "a segment is an age file")
+            elif schema.name == "foxglove.Log":
+                expect('"' not in decoded.message, f"no name in {decoded.message!r}")
+        notes = collections.Counter(note.name for note in reader.iter_metadata())
+    expect(not bare, f"nothing personal in the open: {bare}")
+    expect({"everyone", "several"} < subjects, f"segments of people: {subjects}")
+    expect(counts["/mission/commitment"] > 0, "commitments")
+    expect(notes["selfneg.seal"] == 1 and notes["selfneg.checkpoint"] >= 3, f"a seal and checkpoints: {notes}")
+    print(json.dumps({"messages": sum(counts.values()), "subjects": len(subjects), "notes": dict(notes)}))
+
+
 if sys.argv[1] == "--cut":
     cut(sys.argv[2])
+elif sys.argv[1] == "--sealed":
+    sealed(sys.argv[2])
 else:
     complete(sys.argv[1])

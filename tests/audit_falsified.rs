@@ -1,0 +1,401 @@
+//! Traces that say something else than what happened, each in one respect, and put together
+//! again so that checksums and numbering fit: what the auditor makes of them, with the personal
+//! data and without.
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    reason = "a test may panic"
+)]
+
+mod random_mission;
+mod rewriting;
+
+use std::fmt::Write as _;
+use std::sync::OnceLock;
+
+use prost::Message as _;
+use random_mission::Choice;
+use rewriting::Pieces;
+use selfneg::audit::{Audit, Keys, Status, audit};
+use selfneg::input::Truth;
+use selfneg::mission::{Evidence, LOCATION, Profile, Stated, UserData};
+use selfneg::trace::PERSONAL;
+use selfneg::trace::schema::evidence::record::Record;
+use selfneg::trace::schema::evidence::{self, Verdict, round, served};
+use selfneg::trace::schema::personal::{self, reply};
+use selfneg_core::Options;
+
+fn data(ranks: [u8; 6], conditions: &[&'static str]) -> UserData {
+    let names = [
+        "people with a small child",
+        "elderly people",
+        "disabled people",
+        "people in urgency",
+        "people with health conditions",
+        "people with crowd anxiety",
+    ];
+    let stated = |&condition: &&'static str| Stated { condition: condition.into(), truth: Truth::True };
+    UserData {
+        profiles: vec![Profile {
+            label: "mall".into(),
+            ranks: names.into_iter().map(Into::into).zip(ranks).collect(),
+        }],
+        status: conditions.iter().map(stated).collect(),
+        context: vec![(LOCATION.into(), "mall".into())],
+    }
+}
+
+/// The paper's Alice keeps precedence over Bob in two rounds; then an emergency is decided,
+/// and another one only claimed; then Bob, who is deferred, is served, and Carol takes over
+/// after three rounds.
+fn story() -> Vec<Choice> {
+    let alice = data([4, 2, 2, 3, 5, 3], &["with a small child", "in urgency"]);
+    let bob = data([5, 4, 3, 3, 3, 1], &["elderly"]);
+    let carol = data([0, 0, 0, 0, 0, 5], &["of nobody's rules", "in urgency", "with a small child"]);
+    vec![
+        Choice::Request(1, 0),
+        Choice::Answer(alice),
+        Choice::Request(2, 1),
+        Choice::Answer(bob.clone()),
+        Choice::Rounds(60),
+        Choice::Emergency(0, Evidence::Claimed),
+        Choice::Emergency(0, Evidence::Sensed),
+        Choice::Done,
+        Choice::Done,
+        Choice::Done,
+        Choice::Done,
+        Choice::Done,
+        Choice::Done,
+        Choice::Answer(bob),
+        Choice::Request(3, 0),
+        Choice::Answer(carol),
+        Choice::Rounds(60),
+    ]
+}
+
+fn honest() -> &'static Pieces {
+    static PIECES: OnceLock<Pieces> = OnceLock::new();
+    PIECES.get_or_init(|| Pieces::of(&random_mission::trace(story(), Options::default(), None)))
+}
+
+fn audited(pieces: &Pieces) -> Audit {
+    audit(&pieces.to_bytes(), &Keys::default())
+}
+
+/// The same, told by open records alone.
+fn audited_openly(pieces: &Pieces) -> Audit {
+    let mut pieces = pieces.clone();
+    pieces.messages.retain(|message| !message.topic.starts_with(PERSONAL));
+    pieces.renumber();
+    audited(&pieces)
+}
+
+/// What the findings beyond those of an honest plain trace are.
+fn findings(audit: &Audit) -> String {
+    let worse = |status: Status| status != Status::Unsealed && status != Status::Incomplete;
+    let told = audit.findings.iter().filter(|finding| worse(finding.status));
+    told.map(|finding| format!("{} | {} | {}\n", finding.status, finding.at, finding.what)).collect()
+}
+
+/// What one falsification comes to, told both ways.
+fn told(change: impl Fn(&mut Pieces)) -> (Status, Status, String) {
+    let mut pieces = honest().clone();
+    change(&mut pieces);
+    let (whole, open) = (audited(&pieces), audited_openly(&pieces));
+    let text = format!("with personal data\n{}without\n{}", findings(&whole), findings(&open));
+    (whole.status, open.status, text)
+}
+
+/// What all falsifications of a kind come to.
+#[derive(Default)]
+struct Tale(String);
+
+impl Tale {
+    fn add(&mut self, name: &str, (whole, open, text): (Status, Status, String)) {
+        // Nothing personal is ever told.
+        for word in ["people", "child", "elderly", "urgency", "mall"] {
+            assert!(!text.contains(word), "{word}: {text}");
+        }
+        let _ = writeln!(self.0, "{name}: {whole} with personal data, {open} without\n{text}");
+    }
+}
+
+fn record(change: impl Fn(&mut Record) -> bool) -> impl Fn(&mut Pieces) {
+    move |pieces| pieces.change_record(&change)
+}
+
+#[test]
+fn the_honest_trace_is_found_right() {
+    let found = audited(honest());
+    assert_eq!(findings(&found), "");
+    assert_eq!(found.status, Status::Unsealed);
+    assert_eq!((found.decisions.len(), found.redecided()), (3, 3));
+    let outcomes: Vec<_> = found.decisions.iter().map(|one| one.outcome.as_str()).collect();
+    assert_eq!(outcomes, ["current", "emergency", "interrupting"]);
+    assert!(found.decisions.iter().any(|decision| decision.rounds > 2));
+    assert_eq!(findings(&audited_openly(honest())), "");
+}
+
+#[test]
+fn rounds() {
+    let mut tale = Tale::default();
+    let with = |verdict: Verdict, to: Verdict| {
+        record(move |record| match record {
+            Record::Round(evidence::Round { round: Some(round::Round::Offer(offer)), .. })
+                if offer.verdict() == verdict =>
+            {
+                offer.set_verdict(to);
+                true
+            }
+            _ => false,
+        })
+    };
+    tale.add("rejected_is_accepted", told(with(Verdict::Reject, Verdict::Accept)));
+    tale.add("accepted_is_rejected", told(with(Verdict::Accept, Verdict::Reject)));
+    tale.add("accepted_is_held", told(with(Verdict::Accept, Verdict::Hold)));
+    tale.add("no_verdict", told(with(Verdict::Accept, Verdict::Unspecified)));
+    tale.add(
+        "a_round_is_dropped",
+        told(|pieces| pieces.take_out(|record| matches!(record, Record::Round(round) if round.number == 2))),
+    );
+    tale.add(
+        "two_conditions_in_a_round",
+        told(record(|record| match record {
+            Record::Round(evidence::Round { round: Some(round::Round::Offer(offer)), .. }) => {
+                offer.depth += 1;
+                true
+            }
+            _ => false,
+        })),
+    );
+    tale.add(
+        "the_other_one_sends",
+        told(record(|record| match record {
+            Record::Round(round) => {
+                std::mem::swap(&mut round.sender, &mut round.receiver);
+                true
+            }
+            _ => false,
+        })),
+    );
+    tale.add(
+        "a_quit_instead_of_an_offer",
+        told(record(|record| match record {
+            Record::Round(round) => {
+                round.round = Some(round::Round::Quit(evidence::Mark {}));
+                true
+            }
+            _ => false,
+        })),
+    );
+    insta::assert_snapshot!("rounds", tale.0);
+}
+
+#[test]
+fn ends_and_decisions() {
+    let mut tale = Tale::default();
+    tale.add(
+        "the_winner_is_swapped",
+        told(record(|record| match record {
+            Record::NegotiationEnded(ended) => {
+                let loser =
+                    if ended.winner == Some(ended.current) { ended.interrupting } else { ended.current };
+                ended.winner = Some(loser);
+                true
+            }
+            _ => false,
+        })),
+    );
+    tale.add(
+        "another_ending",
+        told(record(|record| match record {
+            Record::NegotiationEnded(ended) => {
+                ended.ending = "both-quit".to_owned();
+                true
+            }
+            _ => false,
+        })),
+    );
+    tale.add(
+        "willing_out_of_nothing",
+        told(record(|record| match record {
+            Record::NegotiationStarted(started) => {
+                started.willingness = 2;
+                true
+            }
+            _ => false,
+        })),
+    );
+    let decided = |change: fn(&mut evidence::Decided)| {
+        record(move |record| match record {
+            Record::Decided(decided) => {
+                change(decided);
+                true
+            }
+            _ => false,
+        })
+    };
+    tale.add("another_is_served", told(decided(|decided| decided.served = 2)));
+    tale.add(
+        "another_has_precedence",
+        told(decided(|decided| (decided.agreement, decided.served) = (Some(2), 2))),
+    );
+    tale.add("no_agreement", told(decided(|decided| decided.agreement = None)));
+    tale.add("more_rounds", told(decided(|decided| decided.rounds += 1)));
+    tale.add(
+        "by_other_rules",
+        told(decided(|decided| {
+            if let Some(options) = &mut decided.options {
+                options.tie = "surplus".to_owned();
+            }
+        })),
+    );
+    tale.add(
+        "the_robot_does_something_else",
+        told(record(|record| match record {
+            Record::GoalStarted(started) => {
+                match started.served.as_mut().and_then(|served| served.served.as_mut()) {
+                    Some(served::Served::User(user)) if *user == 3 => {
+                        *user = 1;
+                        true
+                    }
+                    _ => false,
+                }
+            }
+            _ => false,
+        })),
+    );
+    insta::assert_snapshot!("ends_and_decisions", tale.0);
+}
+
+#[test]
+fn wiping() {
+    let mut tale = Tale::default();
+    tale.add(
+        "bytes_are_left",
+        told(record(|record| match record {
+            Record::Wiped(wiped) => {
+                wiped.left = 3;
+                true
+            }
+            _ => false,
+        })),
+    );
+    let is = |component: evidence::Component, user: u32| move |record: &Record| matches!(record, Record::Wiped(wiped) if wiped.component() == component && wiped.user == user);
+    tale.add(
+        "the_wipe_is_missing",
+        told(|pieces| pieces.take_out(is(evidence::Component::ContextEthicsManager, 2))),
+    );
+    tale.add(
+        "the_snapshot_is_kept",
+        told(|pieces| pieces.take_out(is(evidence::Component::OfferGenerator, 1))),
+    );
+    insta::assert_snapshot!("wiping", tale.0);
+}
+
+#[test]
+fn emergencies() {
+    let mut tale = Tale::default();
+    let claim = |pieces: &mut Pieces, from: evidence::Evidence, to: evidence::Evidence| {
+        for message in &mut pieces.messages {
+            if &*message.schema == "selfneg.v1.Event" {
+                let mut event = evidence::Event::decode(message.data.as_slice()).unwrap();
+                if let Some(evidence::event::Event::Emergency(claim)) = &mut event.event
+                    && claim.evidence() == from
+                {
+                    claim.set_evidence(to);
+                    message.data = event.encode_to_vec();
+                }
+            }
+        }
+    };
+    use evidence::Evidence::{Claimed, Sensed};
+    tale.add(
+        "a_claim_is_believed",
+        told(|pieces| {
+            claim(pieces, Sensed, Claimed);
+            pieces.change_record(|record| match record {
+                Record::EmergencyDecided(known) => {
+                    known.set_evidence(Claimed);
+                    true
+                }
+                _ => false,
+            });
+        }),
+    );
+    tale.add("a_certain_one_is_left", told(|pieces| claim(pieces, Claimed, Sensed)));
+    tale.add(
+        "it_is_not_decided",
+        told(|pieces| pieces.take_out(|record| matches!(record, Record::EmergencyDecided(_)))),
+    );
+    tale.add(
+        "the_robot_does_not_act_on_it",
+        told(|pieces| {
+            pieces.take_out(|record| {
+                matches!(record, Record::GoalStarted(started) if matches!(
+                    started.served.as_ref().and_then(|served| served.served.as_ref()),
+                    Some(served::Served::Emergency(_))
+                ))
+            });
+        }),
+    );
+    insta::assert_snapshot!("emergencies", tale.0);
+}
+
+#[test]
+fn what_is_personal() {
+    let mut tale = Tale::default();
+    let reply = |change: fn(&mut reply::Reply) -> bool| {
+        move |pieces: &mut Pieces| {
+            for message in &mut pieces.messages {
+                if &*message.schema == "selfneg.personal.v1.Reply" {
+                    let mut personal = personal::Reply::decode(message.data.as_slice()).unwrap();
+                    if personal.reply.as_mut().is_some_and(change) {
+                        message.data = personal.encode_to_vec();
+                        return;
+                    }
+                }
+            }
+            panic!("there is no such reply");
+        }
+    };
+    tale.add(
+        "another_condition",
+        told(reply(|reply| match reply {
+            reply::Reply::Disclosed(disclosed) => {
+                disclosed.disclosed = Some(personal::disclosed::Disclosed::Listed(5));
+                true
+            }
+            _ => false,
+        })),
+    );
+    tale.add(
+        "another_worth",
+        told(reply(|reply| match reply {
+            reply::Reply::Worth(worth) => {
+                worth.value += 1;
+                true
+            }
+            _ => false,
+        })),
+    );
+    tale.add(
+        "another_rank_was_told",
+        told(|pieces| {
+            for message in &mut pieces.messages {
+                if &*message.schema == "selfneg.personal.v1.Input" {
+                    let mut input = personal::Input::decode(message.data.as_slice()).unwrap();
+                    if let Some(personal::input::Input::Data(data)) = &mut input.input {
+                        data.profiles[0].ranks.iter_mut().for_each(|rank| rank.rank = 5 - rank.rank);
+                        message.data = input.encode_to_vec();
+                        return;
+                    }
+                }
+            }
+            panic!("nobody gave any data");
+        }),
+    );
+    insta::assert_snapshot!("what_is_personal", tale.0);
+}
