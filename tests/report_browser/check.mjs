@@ -202,7 +202,7 @@ async function withoutMotion(report) {
 
 if (out === "--picture") {
   const [picture, report] = reports;
-  const { page, close } = await open(report, { viewport: { width: 1120, height: 1270 }, colorScheme: "light" });
+  const { page, close } = await open(report, { viewport: { width: 1040, height: 1140 }, colorScheme: "light" });
   await page.screenshot({ path: picture });
   await close();
   process.exit(0);

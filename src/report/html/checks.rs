@@ -40,7 +40,7 @@ pub(super) fn badge(status: Status) -> Markup {
         Status::Unreadable | Status::Tampered | Status::WrongDecision | Status::Violation => ("reject", "✗"),
         Status::Truncated | Status::Untrusted | Status::Unsealed | Status::Incomplete => ("hold", "!"),
     };
-    html! { span class={ "verdict " (class) } { span aria-hidden="true" { (sign) } " " (status) } }
+    html! { span class={ "verdict fixed " (class) } { span aria-hidden="true" { (sign) } " " (status) } }
 }
 
 pub(super) const fn meaning(status: Status) -> &'static str {
@@ -104,8 +104,8 @@ fn row(property: &PropertyResult) -> Markup {
     html! {
         tr {
             th scope="row" { (property.name) @if let Some(said) = said { " " span.says { (said) } } }
-            td { span class={ "verdict " (class) } { span aria-hidden="true" { (sign) } " " (word) } }
-            td { (property.checked) @if property.checked == 1 { " time" } @else { " times" } }
+            td { span class={ "verdict fixed " (class) } { span aria-hidden="true" { (sign) } " " (word) } }
+            td.fixed { (property.checked) @if property.checked == 1 { " time" } @else { " times" } }
         }
     }
 }
