@@ -37,8 +37,10 @@ fn help_is_as_it_was() {
         ("help_simulate", &["simulate", "--help"]),
         ("help_report", &["report", "--help"]),
         ("help_keygen", &["keygen", "--help"]),
+        ("help_audit", &["audit", "--help"]),
         ("help_unseal", &["unseal", "--help"]),
         ("help_erase", &["erase", "--help"]),
+        ("help_explain", &["explain", "--help"]),
     ] {
         let (text, complaint) = printed(arguments, 0);
         assert_eq!(complaint, "");

@@ -308,6 +308,8 @@ fn who_is_not_there_and_what_is_not_sealed_cannot_be_erased() {
     assert!(matches!(erase(b"nothing", "user-1"), Err(EraseError::Trace(TraceError::NotMcap))));
 }
 
+type McapWriter = mcap::Writer<Cursor<Vec<u8>>>;
+
 /// What a file holds, to be written anew: what is in `notes` at the place of a message comes
 /// before it.
 #[derive(Clone)]
@@ -325,10 +327,15 @@ impl Content {
     /// All sums and indices are right; numbers are as given.
     fn written(&self, options: mcap::WriteOptions) -> Vec<u8> {
         let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
+        self.write(&mut writer);
+        writer.into_inner().into_inner()
+    }
+
+    fn write(&self, writer: &mut McapWriter) {
         let mut notes = self.notes.iter().peekable();
         for (place, message) in (0..).zip(&self.messages) {
             while let Some(note) = notes.next_if(|note| note.messages <= place) {
-                write_note(&mut writer, note);
+                write_note(writer, note);
             }
             let channel = &message.channel;
             let schema = writer.add_schema(&channel.schema, &channel.schema_encoding, &channel.schema_data);
@@ -342,9 +349,8 @@ impl Content {
             };
             writer.write_to_known_channel(&header, &message.data).unwrap();
         }
-        notes.for_each(|note| write_note(&mut writer, note));
+        notes.for_each(|note| write_note(writer, note));
         writer.finish().unwrap();
-        writer.into_inner().into_inner()
     }
 
     fn renumbered(mut self) -> Self {
@@ -594,25 +600,39 @@ fn changed_checkpoints_and_seals_are_found() {
     assert!(!report(&unknown.opened().seal).faults.is_empty());
 }
 
+/// What nobody signs: an attachment, a channel without messages, a schema without channels.
 #[test]
-fn an_attachment_is_found() {
+fn what_is_added_beside_the_messages_is_found() {
     let content = Content::of(sealed());
-    let bytes = content.written(mcap::WriteOptions::new());
-    let mut writer = mcap::WriteOptions::new().create(Cursor::new(Vec::new())).unwrap();
-    content.notes.iter().for_each(|note| write_note(&mut writer, note));
-    writer
-        .attach(&mcap::Attachment {
+    let added = |add: &dyn Fn(&mut McapWriter)| {
+        let mut writer = mcap::WriteOptions::new().create(Cursor::new(Vec::new())).unwrap();
+        add(&mut writer);
+        content.write(&mut writer);
+        let bytes = writer.into_inner().into_inner();
+        let opened = open(&bytes, &[auditor().clone()]).unwrap();
+        assert_eq!(opened.recording.damage, None);
+        report(&opened.seal).faults.iter().map(|fault| fault.what.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(added(&|_| {}), [] as [&str; 0]);
+    let attachment = |writer: &mut McapWriter| {
+        let attachment = mcap::Attachment {
             log_time: 0,
             create_time: 0,
             name: "verdict".to_owned(),
             media_type: "text/plain".to_owned(),
             data: std::borrow::Cow::Borrowed(b"guilty"),
-        })
-        .unwrap();
-    writer.finish().unwrap();
-    assert!(Scan::of(&bytes).added.is_empty());
-    let added = Scan::of(&writer.into_inner().into_inner()).added;
-    assert_eq!(added[0].what, "an attachment");
+        };
+        writer.attach(&attachment).unwrap();
+    };
+    assert_eq!(added(&attachment)[0], "an attachment was added");
+    let schema = |writer: &mut McapWriter| {
+        writer.add_schema("verdict", "protobuf", b"guilty").unwrap();
+    };
+    assert_eq!(added(&schema), ["a schema \"verdict\" was added"]);
+    let channel = |writer: &mut McapWriter| {
+        writer.add_channel(0, "/guilty", "protobuf", &BTreeMap::new()).unwrap();
+    };
+    assert_eq!(added(&channel), ["a channel \"/guilty\" was added"]);
 }
 
 /// Cut behind every record: what was decided before is there, and decided the same again.

@@ -67,7 +67,11 @@ impl Audit {
     /// A block of text about a trace in this file, for people.
     #[must_use]
     pub fn tell(&self, file: &str) -> String {
-        let mut text = format!("{file}: {}\n", self.status);
+        let but = match (self.status, self.unchecked.is_empty()) {
+            (Status::Ok, false) => ", as far as it could be checked",
+            _ => "",
+        };
+        let mut text = format!("{file}: {}{but}\n", self.status);
         if let Some(seal) = &self.seal {
             tell_seal(seal, &mut text);
         }

@@ -45,6 +45,7 @@ use std::time::Duration;
 pub use document::AuditRecord;
 pub use finding::{Finding, Place};
 pub use property::{Property, PropertyResult, Verdict};
+pub(crate) use redecide::redecided;
 pub use redecide::{Redecided, Welfare};
 pub use seal::SealAudit;
 pub use status::Status;

@@ -38,6 +38,11 @@ pub struct Welfare {
     pub cause: &'static str,
 }
 
+/// Whether a case, made again, is the recorded one; for those who want no findings.
+pub(crate) fn redecided(case: &NegotiatedCase) -> Redecided {
+    case.inputs.as_ref().map_or(Redecided::Unchecked, |inputs| check(case, inputs, &mut Log::default()))
+}
+
 /// Decides a case again and holds every round against the recorded one.
 pub(super) fn check(case: &NegotiatedCase, inputs: &Inputs, log: &mut Log) -> Redecided {
     let recorded = &case.recorded;

@@ -8,7 +8,7 @@ use selfneg_core::Options;
 
 use super::simulate::{play, told};
 use super::{CommandError, Report, Status, json, key_files, report, write_whole};
-use crate::audit::Keys;
+use crate::audit::{self, Keys, Redecided};
 use crate::binding::{BoundRules, GoalChoice};
 use crate::demo;
 use crate::precedence::{Policy, decide};
@@ -52,9 +52,10 @@ impl Demo {
         };
         let ran = play(&scenario, false, Some((&recorded, seal)))?;
         write_whole(&drawn, &ran.sketch.to_svg())?;
-        report::write(&recorded, &keys, &reported)?;
+        let found = report::write(&recorded, &keys, &reported)?;
+        let status = if found.status == audit::Status::Ok { Status::Passed } else { Status::Failed };
         if self.json {
-            return Ok(Report { output: document, warnings: Vec::new(), status: Status::Passed });
+            return Ok(Report { output: document, warnings: Vec::new(), status });
         }
         let mut output = told(&scenario, &ran);
         let _ = writeln!(output, "\nThe decision again, with nothing of the building:\n");
@@ -62,14 +63,25 @@ impl Demo {
         let _ = writeln!(
             output,
             "\nThe decision is in {}, the run is recorded in {} and drawn in {}\nThe trace is signed with {} and \
-             sealed to {}\nFor people: {}",
+             sealed to {}",
             decided.display(),
             recorded.display(),
             drawn.display(),
             self.out.join("robot.key").display(),
-            self.out.join("auditor.pub").display(),
+            self.out.join("auditor.pub").display()
+        );
+        let _ = writeln!(
+            output,
+            "Audited with these keys it is {}: {} of {} decisions made again to the same rounds\nThe report, for \
+             people, is {}",
+            found.status,
+            found.decisions.iter().filter(|decision| decision.redecided == Redecided::Same).count(),
+            found.decisions.len(),
             reported.display()
         );
-        Ok(Report { output, warnings: Vec::new(), status: Status::Passed })
+        if status != Status::Passed {
+            let _ = write!(output, "\n{}", found.tell(&recorded.display().to_string()));
+        }
+        Ok(Report { output, warnings: Vec::new(), status })
     }
 }

@@ -6,10 +6,10 @@ use clap::Args;
 
 use super::key_files::{auditor_keys, robot_public_key};
 use super::{CommandError, Report as Said, Status, trace_file, write_whole};
-use crate::audit::{self, Keys};
+use crate::audit::{self, Audit, Keys};
 use crate::report::{File, Page};
 
-/// Make a page of a trace that anybody can read: one HTML file, without network
+/// Make a report of a trace for people: one HTML file that needs nothing else
 ///
 /// With what is personal if the trace holds it in the open or a key opens it; else without.
 /// Exit code 1 if the trace is cut or damaged, not as signed, or a decision is wrong; the page is
@@ -37,13 +37,13 @@ impl Report {
             Keys { robots: robots.collect::<Result<_, _>>()?, identities: auditor_keys(&self.identity)? };
         let found = write(&self.trace, &keys, &self.output)?;
         let output = format!("The report is in {}\n", self.output.display());
-        let (warnings, status) = match found {
+        let (warnings, status) = match found.status {
             audit::Status::Unreadable
             | audit::Status::Tampered
             | audit::Status::WrongDecision
             | audit::Status::Violation
             | audit::Status::Truncated => {
-                let warning = format!("{}: {found}; the report says why", self.trace.display());
+                let warning = format!("{}: {}; the report says why", self.trace.display(), found.status);
                 (vec![warning], Status::Failed)
             }
             audit::Status::Untrusted
@@ -55,12 +55,12 @@ impl Report {
     }
 }
 
-/// Writes the page of a trace, and says what the audit of it comes to.
-pub(super) fn write(trace: &Path, keys: &Keys, page: &Path) -> Result<audit::Status, CommandError> {
+/// Writes the page of a trace; the audit that it shows.
+pub(super) fn write(trace: &Path, keys: &Keys, page: &Path) -> Result<Audit, CommandError> {
     let bytes = trace_file::read(trace)?;
     let name = trace.file_name().unwrap_or_default().to_string_lossy();
     let made = Page::of(File { name: &name, bytes: &bytes }, keys);
     let made = made.map_err(|source| CommandError::Trace { file: trace.to_owned(), source })?;
     write_whole(page, &made.to_html())?;
-    Ok(made.audit.status)
+    Ok(made.audit)
 }

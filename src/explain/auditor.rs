@@ -1,13 +1,13 @@
 //! What an auditor is told: everything that the trace holds of a decision, and what follows.
 
 use selfneg_core::{Disclosure, Ruling};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::auditor_text;
 use super::open::OpenDecision;
 use super::own::own_worth;
-use super::redecision::Redecided;
 use super::told::Told;
+use crate::audit::Redecided;
 use crate::binding::{BoundUser, END_OF_GOAL};
 use crate::case::{Inputs, RecordedDecision, RecordedEvent};
 use crate::counterfactual::{Counterfactual, Counterfactuals, Edit, Pairs, Question};
@@ -54,6 +54,7 @@ pub struct Participant {
     /// The true conditions in their order of disclosure.
     pub conditions: Vec<String>,
     /// The ranks in the active context: disposition, rank.
+    #[serde(serialize_with = "as_object")]
     pub ranks: Vec<(String, u8)>,
     /// The own complete offer in the user's own eyes.
     pub own_worth: u64,
@@ -102,6 +103,8 @@ pub struct WhatIf {
     pub single: Vec<Changed>,
     /// Of two changes at a time: `not-needed`, `found`, `none` or `none-of-the-first`.
     pub pairs: &'static str,
+    /// The smallest pair, if no single change of data does it and a pair was found.
+    pub pair: Option<Changed>,
     /// How many pairs were tried, if none does.
     pub pairs_tried: u64,
     /// Ranks from 0 to this were tried.
@@ -198,6 +201,7 @@ pub struct DisclosedBySide {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Welfare {
     /// W of serving each user, by arrival.
+    #[serde(serialize_with = "as_object")]
     pub of_serving: Vec<(u32, u64)>,
     /// W of whom the robot serves.
     pub served: u64,
@@ -207,13 +211,21 @@ pub struct Welfare {
     pub regret: u64,
 }
 
+/// Pairs as one JSON object.
+fn as_object<K: Serialize, V: Serialize, S: Serializer>(
+    pairs: &[(K, V)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().map(|(key, value)| (key, value)))
+}
+
 /// What an explanation for the auditor is made from.
 pub(super) struct Source<'a> {
     pub(super) open: OpenDecision,
     pub(super) redecided: Redecided,
     pub(super) recorded: Option<&'a RecordedDecision>,
     pub(super) inputs: Option<&'a Inputs>,
-    pub(super) again: Option<&'a Decision>,
+    pub(super) again: Option<Decision>,
     /// Why there are no inputs.
     pub(super) unreadable: Option<String>,
     pub(super) emergency: Option<String>,
@@ -223,7 +235,7 @@ pub(super) struct Source<'a> {
 
 impl AuditorDecision {
     pub(super) fn new(source: Source<'_>) -> Self {
-        let consequences = match (source.recorded, source.inputs, source.again) {
+        let consequences = match (source.recorded, source.inputs, &source.again) {
             (Some(recorded), Some(inputs), Some(again)) if source.redecided == Redecided::Same => {
                 Some(Consequences { recorded, inputs, again })
             }
@@ -349,11 +361,11 @@ impl Consequences<'_> {
             policy: self.inputs.policy,
         };
         let found = Counterfactuals::of(&question).ok()?;
-        let (pairs, pairs_tried) = match &found.pairs {
-            Pairs::NotNeeded => ("not-needed", 0),
-            Pairs::Found(_) => ("found", 0),
-            Pairs::NoneOf { pairs } => ("none", *pairs),
-            Pairs::NoneOfTheFirst { pairs } => ("none-of-the-first", *pairs),
+        let (pairs, pair, pairs_tried) = match &found.pairs {
+            Pairs::NotNeeded => ("not-needed", None, 0),
+            Pairs::Found(pair) => ("found", Some(self.changed(pair)), 0),
+            Pairs::NoneOf { pairs } => ("none", None, *pairs),
+            Pairs::NoneOfTheFirst { pairs } => ("none-of-the-first", None, *pairs),
         };
         let waiting = (0..self.inputs.users.len()).filter(|&place| place != self.again.served);
         let by_own_data = waiting.filter_map(|place| {
@@ -367,6 +379,7 @@ impl Consequences<'_> {
             smallest: found.smallest().map(|one| self.changed(one)),
             single: found.single.iter().map(|one| self.changed(one)).collect(),
             pairs,
+            pair,
             pairs_tried,
             scale: found.scale,
             decided: found.decided,

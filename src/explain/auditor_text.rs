@@ -218,6 +218,10 @@ impl Teller<'_> {
     fn pairs(&self, what_if: &WhatIf) -> Option<String> {
         let tried = what_if.pairs_tried;
         match what_if.pairs {
+            "found" => {
+                let pair = what_if.pair.as_ref().filter(|pair| what_if.smallest.as_ref() != Some(*pair));
+                pair.map(|pair| format!("With two changes of data: {}.", self.changed(pair)))
+            }
             "none" => {
                 Some(format!("Nor would any two changes of data at once; all {tried} pairs were tried."))
             }
@@ -261,15 +265,18 @@ impl Teller<'_> {
         for two in self.decision.disclosure.chunks(2) {
             let told: Vec<String> = two
                 .iter()
-                .map(|side| format!("{} {} of {}", self.name(side.sender), side.disclosed, side.conditions))
+                .map(|side| {
+                    let (sender, all) = (self.name(side.sender), counted(side.conditions, "condition"));
+                    format!("{} of {sender}'s {all}", side.disclosed)
+                })
                 .collect();
             let where_held = match (two, self.decision.disclosure.len()) {
                 ([one, _], 3..) => {
-                    format!("Between {} and {}, conditions", self.name(one.sender), self.name(one.receiver))
+                    format!("Between {} and {}", self.name(one.sender), self.name(one.receiver))
                 }
-                _ => "Conditions".to_owned(),
+                _ => "Disclosed".to_owned(),
             };
-            let mut sentence = format!("{where_held} disclosed: {}.", listed(&told));
+            let mut sentence = format!("{where_held}: {}.", listed(&told));
             for side in two {
                 sentence.push(' ');
                 sentence.push_str(&self.least(side));
@@ -297,12 +304,15 @@ impl Teller<'_> {
 
     fn welfare(&self) -> Vec<String> {
         let Some(welfare) = &self.decision.welfare else { return Vec::new() };
-        let each: Vec<String> =
-            welfare.of_serving.iter().map(|(user, worth)| format!("{} {worth}", self.name(*user))).collect();
+        let each: Vec<String> = welfare
+            .of_serving
+            .iter()
+            .map(|(user, worth)| format!("{worth} to serve {}", self.name(*user)))
+            .collect();
         let verdict = match welfare.regret {
             0 => "Nobody else's request is worth more.".to_owned(),
             regret => format!("The best is worth {regret} more than what was decided."),
         };
-        vec![format!("To all of them together, in ranks: {}. {verdict}", listed(&each))]
+        vec![format!("To all of them together, in ranks: {}. {verdict}", each.join(", "))]
     }
 }

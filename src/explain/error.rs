@@ -7,7 +7,7 @@ use super::Level;
 #[non_exhaustive]
 pub enum ExplainError {
     /// There is no decision of that number.
-    #[error("decision {asked}: the trace has {there}{}", if *there == 0 { String::new() } else { format!(", expected 1 to {there}") })]
+    #[error("decision {asked}: {}", expected_decision(*there))]
     NoSuchDecision {
         /// The number.
         asked: u64,
@@ -57,6 +57,14 @@ pub enum ExplainError {
         /// The number.
         decision: u64,
     },
+}
+
+fn expected_decision(there: usize) -> String {
+    match there {
+        0 => "the trace has no decision".to_owned(),
+        1 => "the trace has one decision, expected 1".to_owned(),
+        there => format!("the trace has {there} decisions, expected a number from 1 to {there}"),
+    }
 }
 
 fn sealed_to(recipients: &[String]) -> String {

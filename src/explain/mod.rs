@@ -21,7 +21,6 @@ mod open;
 mod own;
 mod public;
 mod reason;
-mod redecision;
 mod told;
 
 use std::fmt;
@@ -38,10 +37,10 @@ pub use error::ExplainError;
 pub use open::{Basis, Bilateral, Emergency, Negotiated, OpenDecision, OtherOrder};
 pub use own::{OwnChanges, OwnDecision, OwnPart};
 pub use public::PublicDecision;
-pub use redecision::Redecided;
 pub use told::{Section, Told};
 
-use crate::case::Case;
+use crate::audit::{Redecided, redecided};
+use crate::case::{Case, NegotiatedCase};
 use crate::trace::schema::evidence::event::Event;
 use crate::trace::{Recording, Step};
 
@@ -217,14 +216,17 @@ fn users(recording: &Recording) -> Vec<u32> {
 
 fn explain_case(recording: &Recording, case: &Case, audience: Audience) -> Option<Explained> {
     let open = OpenDecision::of(recording, case);
-    let (redecided, again) = redecision::redecided(case);
-    let (recorded, inputs, unreadable) = match case {
-        Case::Emergency(_) => (None, None, None),
-        Case::Negotiated(case) => {
-            let unreadable = case.inputs.as_ref().err().map(ToString::to_string);
-            (Some(&case.recorded), case.inputs.as_ref().ok(), unreadable)
-        }
+    let negotiated: Option<&NegotiatedCase> = match case {
+        Case::Negotiated(case) => Some(case),
+        Case::Emergency(_) => None,
     };
+    let redecided = match case {
+        Case::Negotiated(case) => redecided(case),
+        Case::Emergency(emergency) if emergency.certain => Redecided::Same,
+        Case::Emergency(_) => Redecided::Differs,
+    };
+    let recorded = negotiated.map(|case| &case.recorded);
+    let inputs = negotiated.and_then(|case| case.inputs.as_ref().ok());
     match audience {
         Audience::Public => Some(Explained::Public(PublicDecision::new(open, redecided))),
         Audience::User(user) => {
@@ -246,8 +248,8 @@ fn explain_case(recording: &Recording, case: &Case, audience: Audience) -> Optio
                 redecided,
                 recorded,
                 inputs,
-                again: again.as_ref(),
-                unreadable,
+                again: inputs.and_then(|inputs| inputs.decide().ok()),
+                unreadable: negotiated.and_then(|case| case.inputs.as_ref().err()).map(ToString::to_string),
                 emergency,
                 names: &name,
             }))))

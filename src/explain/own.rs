@@ -6,8 +6,8 @@ use serde::Serialize;
 use super::open::{Basis, Negotiated, OpenDecision, OtherOrder};
 use super::public::{checked, other_order};
 use super::reason::Speaker;
-use super::redecision::Redecided;
 use super::told::{Told, clock, counted, listed};
+use crate::audit::Redecided;
 use crate::binding::BoundUser;
 use crate::case::{Inputs, RecordedDecision, RecordedEvent, RecordedNegotiation};
 use crate::counterfactual::{Counterfactuals, Edit, Kind, Question};
@@ -50,7 +50,9 @@ pub struct OwnPart {
     pub disclosed: usize,
     /// What the own complete offer is worth in the user's own eyes, in ranks.
     pub own_worth: u64,
-    /// The ranks that add up to it: disposition, rank.
+    /// What being close to the goal adds to that.
+    pub willingness: u8,
+    /// The ranks that add up to the worth: disposition, rank.
     pub made_of: Vec<(String, u8)>,
     /// How many offers of others this user's side accepted, those held included.
     pub accepted: usize,
@@ -249,15 +251,19 @@ impl OwnDecision {
 
 impl OwnPart {
     fn used(&self) -> Vec<String> {
+        let quoted: Vec<String> =
+            self.conditions.iter().take(self.disclosed).map(|name| format!("{name:?}")).collect();
         let mut sentences = vec![match (self.disclosed, self.conditions.len()) {
-            (_, 0) => "You told of no condition that was true of you, so nothing was disclosed.".to_owned(),
-            (0, many) => format!("Nothing of your {} was disclosed.", counted(many, "condition")),
+            (_, 0) => "You told of no condition that is true of you, so nothing was disclosed.".to_owned(),
+            (0, _) => "Nothing that is true of you was disclosed.".to_owned(),
+            (1, 1) => format!("What is true of you was disclosed: {}.", listed(&quoted)),
+            (some, many) if some == many => {
+                format!("All {many} conditions that are true of you were disclosed: {}.", listed(&quoted))
+            }
             (some, many) => {
-                let quoted: Vec<String> =
-                    self.conditions.iter().take(some).map(|name| format!("{name:?}")).collect();
                 format!(
-                    "Of your {} the robot disclosed {some} when it spoke for you: {}.",
-                    counted(many, "condition"),
+                    "Of {many} conditions that are true of you {some} {} disclosed: {}.",
+                    if some == 1 { "was" } else { "were" },
                     listed(&quoted)
                 )
             }
@@ -273,6 +279,9 @@ impl OwnPart {
                 listed(&parts)
             )
         });
+        if self.willingness > 0 {
+            sentences.push(format!("Being close to your goal added {} to that.", self.willingness));
+        }
         sentences.extend(match (self.accepted, self.rejected) {
             (0, 0) => None,
             (1, 0) => Some(
@@ -324,6 +333,7 @@ impl Source<'_> {
             disclosed: tally.disclosed.min(conditions.len()),
             conditions,
             own_worth: own_worth(inputs, me)?,
+            willingness: if place == 0 { inputs.options.willingness } else { 0 },
             made_of: made_of(inputs, me),
             accepted: tally.accepted,
             rejected: tally.rejected,

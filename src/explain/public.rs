@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::open::{Basis, OpenDecision, OtherOrder};
 use super::reason::Speaker;
-use super::redecision::Redecided;
 use super::told::{Told, counted};
+use crate::audit::Redecided;
 
 /// A decision for anybody: made from the open records alone, and whether the decision, made
 /// again, is the same.

@@ -114,8 +114,8 @@ impl Speaker<'_> {
                 format!("After {rounds} {loser}'s side accepted what was offered for {winner}.")
             }
             ("held-offer-stands", Some((winner, loser))) => format!(
-                "After {rounds} {loser}'s side would accept what was offered for {winner}, and {winner}'s \
-                 side had rejected what was offered for {loser} in reply."
+                "After {rounds} {loser}'s side would accept what was offered for {winner}; as much was then \
+                 offered for {loser}, and {winner}'s side rejected it."
             ),
             ("tie", Some((winner, loser))) => format!(
                 "After {rounds} each side would have accepted what was offered for the other; {loser}'s \

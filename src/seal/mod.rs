@@ -3,6 +3,32 @@
 //! A sealed trace is signed by the robot's key and encrypted to the auditors' keys. Everything
 //! here is a function of bytes and keys; files are read and written by the commands, and
 //! randomness comes in as [`Random`]. `docs/seal.md` says what a seal proves and what not.
+//!
+//! ```
+//! use selfneg::demo;
+//! use selfneg::run::run;
+//! use selfneg::seal::{AuditorKey, Privacy, RobotKey, Seal, SealState};
+//! use selfneg::trace::{TraceWriter, open};
+//!
+//! let mut random = |bytes: &mut [u8]| getrandom::fill(bytes).map_err(std::io::Error::other);
+//! let (robot, auditor) = (RobotKey::generate(&mut random)?, AuditorKey::generate());
+//! let robot_pub = robot.public();
+//!
+//! // On the robot.
+//! let privacy = Privacy::Sealed(vec![auditor.public()]);
+//! let seal = Seal { privacy, signer: Some(robot), random: Box::new(random) };
+//! let mut writer = TraceWriter::create(Vec::new(), seal)?;
+//! run(&demo::scenario()?, &mut [&mut writer])?;
+//! let bytes = writer.into_inner().unwrap_or_default();
+//!
+//! // At the auditor's.
+//! let opened = open(&bytes, &[auditor])?;
+//! let SealState::Signed(report) = opened.seal else { panic!("it is not signed") };
+//! assert_eq!(report.key, robot_pub);
+//! assert!(report.complete && report.faults.is_empty());
+//! assert!(opened.recording.replay()?.difference.is_none());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod chain;
 pub mod checkpoint;

@@ -124,10 +124,14 @@ pub struct Reader<'a> {
     format: Option<String>,
     notes: Vec<Note>,
     added: Vec<Added>,
+    /// Channels that no message has used yet, by their digests, and where they are declared.
+    unused: BTreeMap<Digest, (u64, Arc<str>)>,
 }
 
 #[derive(Clone, Debug)]
 struct SchemaText {
+    at: u64,
+    is_used: bool,
     name: Arc<str>,
     encoding: String,
     data: Arc<[u8]>,
@@ -159,6 +163,7 @@ impl<'a> Reader<'a> {
             format: None,
             notes: Vec::new(),
             added: Vec::new(),
+            unused: BTreeMap::new(),
         }
     }
 
@@ -178,6 +183,14 @@ impl<'a> Reader<'a> {
     #[must_use]
     pub fn format(&self) -> Option<&str> {
         self.format.as_deref()
+    }
+
+    /// Schemas and channels declared so far that nothing uses.
+    #[must_use]
+    pub fn unused(&self) -> Vec<Added> {
+        let channels = self.unused.values();
+        let channels = channels.map(|(at, topic)| Added { at: *at, what: format!("a channel {topic:?}") });
+        self.schemas.values().filter_map(SchemaText::unused).chain(channels).collect()
     }
 
     /// Reads on until there is a message or the end.
@@ -348,19 +361,29 @@ impl<'a> Reader<'a> {
         match parse(opcode, body, at)? {
             Record::Schema { header, data } => {
                 let text = SchemaText {
+                    at: wide(at),
+                    is_used: false,
                     name: header.name.into(),
                     encoding: header.encoding,
                     data: data.as_ref().into(),
                 };
-                self.schemas.insert(header.id, text);
+                let replaced = self.schemas.insert(header.id, text);
+                self.added.extend(replaced.as_ref().and_then(SchemaText::unused));
             }
             Record::Channel(channel) => {
                 let described = self.channel(&channel, at)?;
+                if let Some(schema) = self.schemas.get_mut(&channel.schema_id) {
+                    schema.is_used = true;
+                }
+                if self.channels.get(&channel.id).is_none_or(|known| known.digest != described.digest) {
+                    self.unused.insert(described.digest, (wide(at), Arc::clone(&described.topic)));
+                }
                 self.channels.insert(channel.id, described.into());
             }
             Record::Message { header, data } => {
                 let channel = self.channels.get(&header.channel_id);
                 let channel = channel.ok_or_else(|| malformed(at, "a message without its channel"))?;
+                self.unused.remove(&channel.digest);
                 self.ready.push_back(Message {
                     topic: Arc::clone(&channel.topic),
                     schema: Arc::clone(&channel.schema),
@@ -380,7 +403,8 @@ impl<'a> Reader<'a> {
     }
 
     fn channel(&self, channel: &mcap::records::Channel, at: usize) -> Result<Channel, TraceError> {
-        let none = SchemaText { name: "".into(), encoding: String::new(), data: Arc::new([]) };
+        let none =
+            SchemaText { at: 0, is_used: true, name: "".into(), encoding: String::new(), data: Arc::new([]) };
         let schema = match (channel.schema_id, self.schemas.get(&channel.schema_id)) {
             (0, _) => none,
             (_, Some(schema)) => schema.clone(),
@@ -421,6 +445,12 @@ impl<'a> Reader<'a> {
             opcode => format!("a record of kind {opcode:#04x}"),
         };
         self.added.push(Added { at: wide(at), what });
+    }
+}
+
+impl SchemaText {
+    fn unused(&self) -> Option<Added> {
+        (!self.is_used).then(|| Added { at: self.at, what: format!("a schema {:?}", self.name) })
     }
 }
 

@@ -35,10 +35,15 @@ impl Scan {
                 Err(error) => damage = Some(error),
             }
         }
+        let mut added = reader.added().to_vec();
+        // In a file that goes on they may be used later.
+        if damage.is_none() {
+            added.extend(reader.unused());
+        }
         Self {
             messages,
             notes: reader.notes().to_vec(),
-            added: reader.added().to_vec(),
+            added,
             format: reader.format().map(str::to_owned),
             damage,
             length: u64::try_from(bytes.len()).unwrap_or(u64::MAX),

@@ -1,4 +1,5 @@
 //! Random missions, rich in decisions: what an environment may do, and the trace of it.
+#![allow(dead_code, reason = "each test uses a part")]
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -8,8 +9,8 @@ use selfneg::demo;
 use selfneg::input::Truth;
 use selfneg::mission::{
     AskId, Category, CategoryId, Command, ContextImplication, Event, Evidence, ExecutionId, Goal, GoalId,
-    Inference, LOCATION, Mission, MissionRules, Output, Place, Profile, Proof, Specification, Stated, Task,
-    UserData, UserId, Willingness,
+    Inference, LOCATION, Mission, MissionRules, Output, Place, Profile, Proof, Record, Specification, Stated,
+    Task, UserData, UserId, Willingness,
 };
 use selfneg::precedence::Policy;
 use selfneg::run::{Participant, Setup, Watcher};
@@ -280,7 +281,7 @@ impl Stage<'_> {
                 Output::Command(Command::AskData { user, ask, .. }) => self.asks.push((*user, *ask)),
                 Output::Command(Command::Execute { execution, .. }) => self.execution = *execution,
                 Output::Command(Command::NextRound) => self.due += 1,
-                Output::Record(selfneg::mission::Record::Decided { .. }) => decided = true,
+                Output::Record(Record::Decided { .. } | Record::EmergencyDecided { .. }) => decided = true,
                 _ => {}
             }
             self.watcher.output(at, &output).unwrap();
@@ -289,12 +290,4 @@ impl Stage<'_> {
             self.watcher.decided(at).unwrap();
         }
     }
-}
-
-/// The same trace without everything personal.
-pub(crate) fn without_personal(bytes: &[u8]) -> Vec<u8> {
-    let mut pieces = super::rewriting::Pieces::of(bytes);
-    pieces.messages.retain(|message| !message.topic.starts_with(selfneg::trace::PERSONAL));
-    pieces.renumber();
-    pieces.to_bytes()
 }

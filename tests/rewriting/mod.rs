@@ -1,5 +1,6 @@
 //! A trace taken to pieces, and put together again after somebody has had a hand in it: with
 //! right checksums and right MCAP records, so that only the evidence itself can tell.
+#![allow(dead_code, reason = "each test uses a part")]
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -21,7 +22,9 @@ impl Pieces {
         let scan = Scan::of(bytes);
         assert_eq!(scan.damage, None);
         let notes = scan.notes.into_iter().map(|note| (note.name, note.entries)).collect();
-        Self { messages: scan.messages, notes }
+        // Where a message stood in the file is no part of it.
+        let messages = scan.messages.into_iter().map(|message| Message { at: 0, ..message }).collect();
+        Self { messages, notes }
     }
 
     /// An MCAP file of them, the metadata first.
