@@ -24,7 +24,7 @@ pub struct Page {
     pub missing: Option<Missing>,
     /// The length of the run.
     pub until: Duration,
-    /// The time that the map opens at: the first interruption, or the first decision.
+    /// The time that the map opens at: the interruption that led to the first decision.
     pub opening: Duration,
     /// Where everybody was.
     pub stage: Stage,
@@ -104,11 +104,7 @@ impl Page {
         let explained = explain(recording, audience, None).unwrap_or_default();
         let decisions = decisions(recording, &who, &explained);
         let last = messages.iter().map(|message| message.log_time).max().unwrap_or(0);
-        let interruption = timeline.sentences(|kind| kind == Kind::Interruption).next();
-        let opening = interruption
-            .map(|sentence| sentence.at)
-            .or_else(|| decisions.first().map(|decision| decision.at))
-            .unwrap_or_default();
+        let opening = opening(&timeline, &decisions);
         let title = if header.scenario.is_empty() { "A run of the robot" } else { &header.scenario };
         Self {
             title: title.to_owned(),
@@ -123,6 +119,15 @@ impl Page {
             decisions,
             audit: source.audit,
         }
+    }
+}
+
+/// The last interruption before the first decision, or without decisions the first one.
+fn opening(timeline: &Timeline, decisions: &[Decision]) -> Duration {
+    let mut interruptions = timeline.sentences(|kind| kind == Kind::Interruption).map(|sentence| sentence.at);
+    match decisions.first() {
+        Some(first) => interruptions.take_while(|at| *at <= first.at).last().unwrap_or(first.at),
+        None => interruptions.next().unwrap_or_default(),
     }
 }
 
