@@ -1,7 +1,7 @@
 //! A small sealed trace, changed and cut in every way: never a panic, never ok where the content
 //! changed, and every decision that is intact before a cut is still reported.
 //!
-//! By default one byte in so many is tried; all of them with
+//! By default one byte or message in so many is tried; all of them with
 //! `cargo test --release --test audit_damage -- --ignored`.
 #![allow(
     clippy::unwrap_used,
@@ -35,6 +35,9 @@ use selfneg_core::Options;
 
 /// By default every so many-th byte and length.
 const STRIDE: usize = 449;
+
+/// By default every so many-th message.
+const MESSAGE_STRIDE: usize = 9;
 
 struct Sealed {
     bytes: Vec<u8>,
@@ -253,12 +256,17 @@ fn cut_files() {
 
 #[test]
 #[ignore = "minutes in debug; cargo test --release --test audit_damage -- --ignored --nocapture"]
-fn every_byte_and_every_length() {
+fn every_byte_every_length_and_every_message() {
     println!("{} bytes", sealed().bytes.len());
     let began = Instant::now();
     println!("flipped: {:?} in {:.1?}", flip_every(1), began.elapsed());
     let began = Instant::now();
     println!("cut: {:?} in {:.1?}", cut_at_every(1), began.elapsed());
+    let began = Instant::now();
+    disturb_every(1);
+    splice_at_every(1);
+    cut_between_every(1);
+    println!("messages disturbed, spliced and cut in {:.1?}", began.elapsed());
 }
 
 /// What is done to the messages is seen without the auditor's key.
@@ -275,9 +283,13 @@ fn tampered(what: &str, pieces: &Pieces) {
 
 #[test]
 fn messages_dropped_repeated_swapped_and_changed() {
+    disturb_every(MESSAGE_STRIDE);
+}
+
+fn disturb_every(stride: usize) {
     let original = Pieces::of(&sealed().bytes);
     let messages = original.messages.len();
-    (0..messages).into_par_iter().for_each(|at| {
+    (0..messages).into_par_iter().step_by(stride).for_each(|at| {
         let renumbered = |mut pieces: Pieces| {
             for (sequence, message) in (0..).zip(&mut pieces.messages) {
                 message.sequence = sequence;
@@ -312,10 +324,14 @@ fn messages_dropped_repeated_swapped_and_changed() {
 
 #[test]
 fn cut_between_messages_and_mended() {
+    cut_between_every(MESSAGE_STRIDE);
+}
+
+fn cut_between_every(stride: usize) {
     let original = Pieces::of(&sealed().bytes);
     let checkpoints = original.notes.iter().filter(|(name, _)| name == "selfneg.checkpoint").count();
     assert_eq!(checkpoints, 5);
-    (1..original.messages.len()).into_par_iter().for_each(|messages| {
+    (1..original.messages.len()).into_par_iter().step_by(stride).for_each(|messages| {
         let mut cut = original.clone();
         cut.messages.truncate(messages);
         let found = audited(&cut.to_bytes());
@@ -382,12 +398,16 @@ fn signed_by_another_key_it_is_untrusted() {
 
 #[test]
 fn two_traces_of_one_robot_spliced() {
+    splice_at_every(MESSAGE_STRIDE);
+}
+
+fn splice_at_every(stride: usize) {
     let sealed = sealed();
     let other = made(&sealed.signer, &sealed.keys.identities[0]);
     assert_ok(&audited(&other.bytes));
     let (ours, theirs) = (Pieces::of(&sealed.bytes), Pieces::of(&other.bytes));
     assert_eq!(ours.messages.len(), theirs.messages.len());
-    (1..ours.messages.len()).into_par_iter().for_each(|at| {
+    (1..ours.messages.len()).into_par_iter().step_by(stride).for_each(|at| {
         let mut spliced = ours.clone();
         spliced.messages[at..].clone_from_slice(&theirs.messages[at..]);
         if spliced.messages != ours.messages {

@@ -259,7 +259,7 @@ proptest! {
                     Change::Withheld(_, name) => (0, name.clone()),
                     Change::Added(_, name) => (1, name.clone()),
                     Change::Rank(_, name, _) => (2, name.clone()),
-                    Change::Order(_) => unreachable!(),
+                    Change::Order(with) => panic!("an order, with {with}"),
                 })
                 .collect()
         };

@@ -7,9 +7,7 @@
     reason = "a test may panic"
 )]
 
-#[allow(dead_code, reason = "every test file uses its own part")]
 mod random_mission;
-#[allow(dead_code, reason = "random_mission uses it")]
 mod rewriting;
 mod scaffold;
 
@@ -275,6 +273,39 @@ fn a_user_is_told_nothing_of_another() {
                 );
             }
             assert!(!said.contains("disp-xq") || said.contains("weighs"), "{said}");
+        }
+    }
+}
+
+#[test]
+fn the_example_scenarios_are_told_without_what_is_not_to_be_told() {
+    for name in SCENARIOS {
+        let recording = recorded(&example(name));
+        let rules = recording.rules.clone().unwrap();
+        let said = all_that_is_said(&recording, Audience::Public);
+        let listed = rules.activation.iter().chain(&rules.implications);
+        let of_rules = listed.flat_map(|row| std::iter::once(&row.name).chain(&row.dispositions));
+        let of_people = recording.participants.iter().flat_map(|who| {
+            let stated = who.status.iter().map(|stated| &stated.condition);
+            stated.chain([&who.name, &who.person, &who.location]).chain(&who.goal)
+        });
+        for word in of_rules.chain(of_people).filter(|word| !word.is_empty()) {
+            assert!(!said.contains(word.as_str()), "{name}: {word}\n{said}");
+        }
+        for who in &recording.participants {
+            let said = all_that_is_said(&recording, Audience::User(who.user));
+            let own: BTreeSet<&str> = who.status.iter().map(|stated| stated.condition.as_str()).collect();
+            for other in recording.participants.iter().filter(|other| other.user != who.user) {
+                assert!(!said.contains(&other.name), "{name}: {} to {}\n{said}", other.name, who.name);
+                for stated in other.status.iter().filter(|stated| !own.contains(stated.condition.as_str())) {
+                    let told_as_own = said
+                        .replace(&format!("Had \\\"{}\\\" been true of you too", stated.condition), "")
+                        .replace(&format!("Had {:?} been true of you too", stated.condition), "")
+                        .replace(&format!("\"added\": {:?}", stated.condition), "");
+                    let quoted = format!("{:?}", stated.condition);
+                    assert!(!told_as_own.contains(&quoted), "{name}: {quoted} to {}\n{said}", who.name);
+                }
+            }
         }
     }
 }

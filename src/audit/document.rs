@@ -119,14 +119,18 @@ impl Audit {
 fn tell_seal(seal: &SealAudit, text: &mut String) {
     let _ = writeln!(
         text,
-        "  signed by {} ({}); {} checkpoints cover {} messages and {} decisions, {}",
+        "  signed by {} ({}); {} cover {} and {}, {}",
         seal.key,
         if seal.trusted { "trusted" } else { "not trusted" },
-        seal.checkpoints,
-        seal.covered_messages,
-        seal.covered_decisions,
+        count(seal.checkpoints, "checkpoint"),
+        count(seal.covered_messages, "message"),
+        count(seal.covered_decisions, "decision"),
         if seal.complete { "to the end" } else { "not to the end" }
     );
+}
+
+fn count(number: u64, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
 fn tell_decisions(decisions: &[DecisionAudit], text: &mut String) {

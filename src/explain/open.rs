@@ -7,7 +7,7 @@ use crate::case::{Case, RecordedDecision, RecordedEmergency, RecordedEvent, Reco
 use crate::mission::{Evidence, UserId};
 use crate::precedence::Policy;
 use crate::trace::schema::evidence::{self, record::Record};
-use crate::trace::{Open, Recording, Step};
+use crate::trace::{Entry, Open, Recording, Step};
 
 /// A decision by pseudonyms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -173,36 +173,33 @@ fn by_emergency(recording: &Recording, emergency: &RecordedEmergency) -> OpenDec
     }
 }
 
-/// The records from a place on.
-fn records(recording: &Recording) -> impl Iterator<Item = (u64, &Record)> {
-    recording.entries.iter().filter_map(|entry| match &entry.step {
-        Step::Reply { open: Open::Record(open), .. } => Some((entry.index, open.record.as_ref()?)),
+/// The record of an entry, if it is one.
+fn record(entry: &Entry) -> Option<&Record> {
+    match &entry.step {
+        Step::Reply { open: Open::Record(open), .. } => open.record.as_ref(),
         _ => None,
-    })
+    }
 }
 
 /// Whom the robot is serving before this place.
 fn being_served(recording: &Recording, index: u64) -> Option<UserId> {
-    let mut served = None;
-    for (_, record) in records(recording).take_while(|(at, _)| *at < index) {
-        match record {
-            Record::GoalStarted(started) => {
-                served = match started.served.and_then(|served| served.served) {
-                    Some(evidence::served::Served::User(user)) => Some(UserId(user)),
-                    _ => None,
-                };
-            }
-            Record::GoalEnded(_) => served = None,
-            _ => {}
-        }
+    let before = recording.entries.get(..usize::try_from(index).ok()?)?;
+    let latest = before.iter().rev().filter_map(record).find_map(|record| match record {
+        Record::GoalStarted(started) => Some(started.served.and_then(|served| served.served)),
+        Record::GoalEnded(_) => Some(None),
+        _ => None,
+    });
+    match latest.flatten() {
+        Some(evidence::served::Served::User(user)) => Some(UserId(user)),
+        _ => None,
     }
-    served
 }
 
 /// Who is made to wait by this emergency, until the robot has done what it asks for.
 fn deferred_by(recording: &Recording, emergency: &RecordedEmergency) -> Vec<u32> {
     let mut waiting = Vec::new();
-    for (_, record) in records(recording).skip_while(|(at, _)| *at <= emergency.index) {
+    let after = usize::try_from(emergency.index).ok().and_then(|index| recording.entries.get(index..));
+    for record in after.unwrap_or_default().iter().filter_map(record) {
         match record {
             Record::Deferred(deferred) if deferred.why() == evidence::Waiting::Emergency => {
                 waiting.push(deferred.user);
