@@ -21,6 +21,7 @@ use proptest::prelude::*;
 use scaffold::program::{refusal, selfneg};
 use selfneg::audit::{Keys, Status};
 use selfneg::report::{Act, File, Page, Why};
+use selfneg::seal::AuditorKey;
 use selfneg::trace::Recording;
 use sha2::Digest as _;
 use tempfile::TempDir;
@@ -367,6 +368,45 @@ fn a_cut_trace_is_exit_code_1_and_a_page_all_the_same() {
     command.assert().code(1).stderr("warning: cut.mcap: truncated; the report says why\n");
     let read = read_out(&fs::read_to_string(folder.path().join("page.html")).unwrap());
     assert!(read.contains("The end is missing; what is intact was checked."), "{read}");
+}
+
+#[test]
+fn who_is_erased_is_not_on_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let trace = folder.path().join("erased.mcap");
+    fs::copy(demo().path().join("trace.mcap"), &trace).unwrap();
+    selfneg().arg("erase").arg(&trace).arg("user-2").assert().success();
+    let page = folder.path().join("page.html");
+    let mut command = selfneg();
+    command.current_dir(demo().path()).arg("report").arg(&trace).arg("-o").arg(&page);
+    command.args(["--identity", "auditor.key", "--robot-key", "robot.pub"]).assert().code(0);
+    let html = fs::read_to_string(page).unwrap();
+    assert_self_contained(&html);
+    let read = read_out(&html);
+    for erased in ["Bob", "elderly"] {
+        assert!(!html.contains(erased), "{erased}");
+    }
+    for said in
+        ["Alice discloses “with a small child”", "It was erased (what shows several people at once, user-2)"]
+    {
+        assert!(read.contains(said), "{said}:\n{read}");
+    }
+}
+
+#[test]
+fn a_sealed_trace_cut_anywhere_gives_a_page_or_an_error() {
+    let whole = fs::read(demo().path().join("trace.mcap")).unwrap();
+    let key = fs::read_to_string(demo().path().join("auditor.key")).unwrap();
+    let keys = Keys { robots: Vec::new(), identities: AuditorKey::parse_all(&key).unwrap() };
+    let mut pages = 0;
+    for cut in (0..whole.len()).step_by(whole.len() / 40) {
+        if let Ok(page) = Page::of(File { name: "cut.mcap", bytes: &whole[..cut] }, &keys) {
+            assert_ne!(page.audit.status, Status::Ok);
+            assert_self_contained(&page.to_html());
+            pages += 1;
+        }
+    }
+    assert!(pages > 20, "{pages}");
 }
 
 proptest! {

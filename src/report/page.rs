@@ -158,6 +158,11 @@ fn missing(opened: &Opened, stage: &Stage, timeline: &Timeline) -> Option<Missin
     if opened.recording.rules.is_none() {
         what.push("what people and goals are called, what was disclosed, and what it was worth");
         what.push("what would have changed a decision, and what serving whom is worth");
+    } else if !opened.erased.is_empty() {
+        what.push("what those erased were called and disclosed, and what offers were worth to them");
+        what.push(
+            "what would have changed a decision in which they took part, and what serving whom was worth",
+        );
     }
     if stage.robot().is_none() {
         what.push("where the robot and people were");

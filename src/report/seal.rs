@@ -3,7 +3,7 @@
 use super::page::Fact;
 use crate::audit::SealAudit;
 use crate::seal::SealState;
-use crate::trace::{Opened, PersonalPart};
+use crate::trace::{Opened, PersonalPart, Whose};
 
 /// What the page says of the seal.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,7 +48,7 @@ impl Seal {
         }
         .to_owned();
         if !opened.erased.is_empty() {
-            privacy.push_str(&format!(" Erased: {}.", opened.erased.join(", ")));
+            privacy.push_str(&format!(" Erased: {}.", erased(opened)));
         }
         Self { signature, privacy, facts: facts(audit) }
     }
@@ -93,10 +93,20 @@ pub(super) fn why_hidden(opened: &Opened) -> String {
                 .to_owned()
         }
         PersonalPart::Plain | PersonalPart::Open if !opened.erased.is_empty() => {
-            format!("It was erased ({}); nothing brings it back.", opened.erased.join(", "))
+            format!("It was erased ({}); nothing brings it back.", erased(opened))
         }
         PersonalPart::Plain | PersonalPart::Open => "The trace does not hold it, or ends before.".to_owned(),
     }
+}
+
+/// Whose data are erased.
+fn erased(opened: &Opened) -> String {
+    let several = Whose::Several.to_string();
+    let subject = |subject: &String| {
+        if *subject == several { "what shows several people at once".to_owned() } else { subject.clone() }
+    };
+    let subjects: Vec<String> = opened.erased.iter().map(subject).collect();
+    subjects.join(", ")
 }
 
 /// `1 decision`, `2 decisions`.
