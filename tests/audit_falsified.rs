@@ -21,6 +21,7 @@ use rewriting::Pieces;
 use selfneg::audit::{Audit, Keys, Status, audit};
 use selfneg::input::Truth;
 use selfneg::mission::{Evidence, LOCATION, Profile, Stated, UserData};
+use selfneg::seal::chain::rules_digest;
 use selfneg::trace::PERSONAL;
 use selfneg::trace::schema::evidence::record::Record;
 use selfneg::trace::schema::evidence::{self, Verdict, round, served};
@@ -398,4 +399,28 @@ fn what_is_personal() {
         }),
     );
     insta::assert_snapshot!("what_is_personal", tale.0);
+}
+
+#[test]
+fn limits_that_no_memory_holds_are_not_run() {
+    let mut pieces = honest().clone();
+    let forge = |specification: &mut Option<evidence::Specification>| {
+        let limits = specification.as_mut().unwrap().limits.as_mut().unwrap();
+        (limits.users, limits.requests, limits.conditions, limits.profiles) = (255, 255, 65_000, 255);
+    };
+    let of = |pieces: &Pieces, schema: &str| {
+        pieces.messages.iter().position(|message| &*message.schema == schema).unwrap()
+    };
+    let (header_at, rules_at) = (of(&pieces, "selfneg.v1.Header"), of(&pieces, "selfneg.personal.v1.Rules"));
+    let mut rules = personal::Rules::decode(pieces.messages[rules_at].data.as_slice()).unwrap();
+    forge(&mut rules.specification);
+    pieces.messages[rules_at].data = rules.encode_to_vec();
+    let mut header = evidence::Header::decode(pieces.messages[header_at].data.as_slice()).unwrap();
+    forge(&mut header.specification);
+    let options = header.options.clone().unwrap();
+    header.rules_digest = rules_digest(&options, &header.policy, &rules.encode_to_vec()).to_vec();
+    pieces.messages[header_at].data = header.encode_to_vec();
+    let found = audited(&pieces);
+    assert_eq!(found.redecided(), 1, "the emergency alone: {:#?}", found.findings);
+    assert!(found.findings.iter().any(|finding| finding.what.contains("cells of memory")), "{found:#?}");
 }

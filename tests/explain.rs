@@ -14,6 +14,7 @@ mod scaffold;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use proptest::prelude::*;
 use scaffold::folders::{Place, lists};
@@ -35,6 +36,10 @@ const SCENARIOS: [&str; 6] = ["mall", "three_users", "emergency", "elevator", "w
 fn example(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/scenarios/{name}.toml"))
 }
+
+/// The example scenarios, driven once for all tests.
+static EXAMPLES: LazyLock<Vec<(&str, Recording)>> =
+    LazyLock::new(|| SCENARIOS.map(|name| (name, recorded(&example(name)))).to_vec());
 
 fn recorded(scenario: &Path) -> Recording {
     let scenario = Scenario::open(scenario).unwrap();
@@ -279,10 +284,9 @@ fn a_user_is_told_nothing_of_another() {
 
 #[test]
 fn the_example_scenarios_are_told_without_what_is_not_to_be_told() {
-    for name in SCENARIOS {
-        let recording = recorded(&example(name));
+    for (name, recording) in EXAMPLES.iter() {
         let rules = recording.rules.clone().unwrap();
-        let said = all_that_is_said(&recording, Audience::Public);
+        let said = all_that_is_said(recording, Audience::Public);
         let listed = rules.activation.iter().chain(&rules.implications);
         let of_rules = listed.flat_map(|row| std::iter::once(&row.name).chain(&row.dispositions));
         let of_people = recording.participants.iter().flat_map(|who| {
@@ -293,7 +297,7 @@ fn the_example_scenarios_are_told_without_what_is_not_to_be_told() {
             assert!(!said.contains(word.as_str()), "{name}: {word}\n{said}");
         }
         for who in &recording.participants {
-            let said = all_that_is_said(&recording, Audience::User(who.user));
+            let said = all_that_is_said(recording, Audience::User(who.user));
             let own: BTreeSet<&str> = who.status.iter().map(|stated| stated.condition.as_str()).collect();
             for other in recording.participants.iter().filter(|other| other.user != who.user) {
                 assert!(!said.contains(&other.name), "{name}: {} to {}\n{said}", other.name, who.name);
@@ -312,9 +316,8 @@ fn the_example_scenarios_are_told_without_what_is_not_to_be_told() {
 
 #[test]
 fn the_public_is_told_what_open_records_alone_say() {
-    for name in SCENARIOS {
-        let recording = recorded(&example(name));
-        assert_eq!(but_for_the_check(&recording), but_for_the_check(&without_personal(&recording)), "{name}");
+    for (name, recording) in EXAMPLES.iter() {
+        assert_eq!(but_for_the_check(recording), but_for_the_check(&without_personal(recording)), "{name}");
     }
     let canaries = Canaries::new();
     for which in ["two.toml", "three.toml"] {

@@ -381,7 +381,7 @@ impl<'o> Examination<'o> {
     fn personal(&self, cases: &[Case], unchecked: &mut Vec<String>, log: &mut Log) {
         let sealed = matches!(self.opened.privacy, PersonalPart::Open);
         seal::check_commitments(self.recording, sealed, log);
-        let rules = match self.recording.mission_rules() {
+        let rules = match crate::case::rules_to_run(self.recording) {
             Ok(rules) => rules,
             Err(error) => {
                 if self.has_everything() && self.recording.personal_until > 0 {
@@ -391,7 +391,7 @@ impl<'o> Examination<'o> {
                         format!("the mission cannot be run again: {error}"),
                     );
                 }
-                unchecked.push(self.why_nothing_personal(cases.len()));
+                unchecked.push(self.why_nothing_personal(cases.len(), &error));
                 return;
             }
         };
@@ -414,11 +414,11 @@ impl<'o> Examination<'o> {
         }
     }
 
-    fn why_nothing_personal(&self, decisions: usize) -> String {
+    fn why_nothing_personal(&self, decisions: usize, error: &str) -> String {
         let why = match self.opened.privacy {
             PersonalPart::LeftOut => "the personal data were left out",
             PersonalPart::Locked => "no identity that opens the personal data was given",
-            PersonalPart::Plain | PersonalPart::Open => "the rules are not there",
+            PersonalPart::Plain | PersonalPart::Open => error,
         };
         let decisions = if decisions == 1 {
             "the decision was".to_owned()

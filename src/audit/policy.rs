@@ -11,6 +11,9 @@ use crate::case::{RecordedDecision, RecordedNegotiation};
 use crate::mission::UserId;
 use crate::precedence::Policy;
 
+/// No mission holds more: their number is one byte of its limits.
+const MAX_PARTICIPANTS: usize = 255;
+
 /// The rules that the header puts in force.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InForce {
@@ -53,6 +56,9 @@ fn follows(
     distinct.dedup();
     if participants.len() < 2 || distinct.len() != participants.len() {
         return Err("a decision among fewer than two users".to_owned());
+    }
+    if participants.len() > MAX_PARTICIPANTS {
+        return Err(format!("a decision among {} users, more than any robot holds", participants.len()));
     }
     if let Some(current) = current
         && participants.first() != Some(&current)

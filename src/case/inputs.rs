@@ -72,16 +72,36 @@ impl Inputs {
     }
 }
 
+/// Rules under which a mission would allocate more cells of memory than this for its users are
+/// not made again: a forged trace could ask for any amount. The default limits make some
+/// hundreds.
+const MAX_CELLS: usize = 1 << 20;
+
+/// The rules of a recorded mission, if they are there and ask for no unreasonable memory.
+///
+/// # Errors
+/// Why not, in words.
+pub(crate) fn rules_to_run(recording: &Recording) -> Result<MissionRules, String> {
+    let rules = recording.mission_rules().map_err(|error| error.to_string())?;
+    let limits = rules.specification().limits;
+    let ranks = usize::from(limits.profiles).saturating_mul(rules.bound().dispositions());
+    let each =
+        usize::from(limits.conditions).saturating_add(usize::from(limits.attributes)).saturating_add(ranks);
+    let cells = each.saturating_mul(usize::from(limits.users));
+    if cells > MAX_CELLS {
+        return Err(format!("its limits ask for {cells} cells of memory, expected at most {MAX_CELLS}"));
+    }
+    Ok(rules)
+}
+
 /// For each decision, in their order, what it was made from.
 pub(super) fn of_decisions(
     recording: &Recording,
     decisions: &[RecordedDecision],
 ) -> Vec<Result<Inputs, CaseError>> {
-    let rules = match recording.mission_rules() {
+    let rules = match rules_to_run(recording) {
         Ok(rules) => rules,
-        Err(error) => {
-            return decisions.iter().map(|_| Err(CaseError::Rules(error.to_string()))).collect();
-        }
+        Err(error) => return decisions.iter().map(|_| Err(CaseError::Rules(error.clone()))).collect(),
     };
     let mut listener = Listener {
         bound: Arc::new(rules.bound().clone()),
@@ -168,6 +188,10 @@ impl Listener<'_> {
             Record::DataAccepted(subject) => {
                 let user = UserId(subject.user);
                 if let Some((_, data)) = self.said.take_if(|(whose, _)| *whose == user) {
+                    // The mission holds no more users than its limits say; nor is more kept here.
+                    let users = usize::from(self.rules.specification().limits.users);
+                    let has_room = self.heard.len() < users || self.heard.contains_key(&user);
+                    let data = data.filter(|_| has_room);
                     let recollection = data.and_then(|data| Recollection::of(user, &data, self.rules).ok());
                     self.heard.insert(user, recollection);
                 }

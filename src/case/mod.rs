@@ -27,8 +27,8 @@ mod inputs;
 mod recorded;
 
 pub use docket::Docket;
-pub(crate) use inputs::policy_for;
 pub use inputs::{CaseError, Inputs};
+pub(crate) use inputs::{policy_for, rules_to_run};
 pub use recorded::{
     RecordedDecision, RecordedEmergency, RecordedEnd, RecordedEvent, RecordedNegotiation, RecordedRound,
     Worth, options_in,

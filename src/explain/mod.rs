@@ -10,6 +10,17 @@
 //!   ([`counterfactual`](crate::counterfactual)) and how much was disclosed for it
 //!   ([`disclosure`](crate::disclosure)).
 //!
+//! ```no_run
+//! use selfneg::explain::{Audience, explain};
+//! use selfneg::trace::open;
+//!
+//! let opened = open(&std::fs::read("trace.mcap")?, &[])?;
+//! for decision in explain(&opened.recording, Audience::Public, None)? {
+//!     println!("{}", decision.told().text());
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! Each is a typed value that holds its sentences too ([`Told`]), so that it can be printed,
 //! written as JSON or laid out on a page. `docs/explain.md` says what each level leaves out and
 //! why.
