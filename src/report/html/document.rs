@@ -7,6 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest as _, Sha256};
 
+use super::super::decision::Decision;
 use super::super::page::Page;
 use super::{checks, decision, facts, player, timeline};
 use crate::run::clock;
@@ -93,6 +94,9 @@ fn length(time: Duration) -> String {
     }
 }
 
+/// So many answers are shown at once.
+const FIRST_ANSWERS: usize = 6;
+
 /// The answers first, each in a sentence or two.
 fn answers(page: &Page) -> Markup {
     html! {
@@ -101,20 +105,29 @@ fn answers(page: &Page) -> Markup {
             @if page.decisions.is_empty() {
                 p { "Nothing had to be decided." }
             } @else {
-                ol.answers {
-                    @for decision in &page.decisions {
-                        li {
-                            p.headline {
-                                @if decision.question.is_empty() { (clock(decision.at)) " – " (decision.headline) }
-                                @else { (decision.question) }
-                            }
-                            p { @for sentence in &decision.answer { (sentence) " " } }
-                            @if let Some(change) = &decision.smallest_change { p { (change) } }
-                            p { a href={ "#decision-" (decision.number) } { "Decision " (decision.number) " round by round" } }
-                        }
+                @let (first, more) = page.decisions.split_at(page.decisions.len().min(FIRST_ANSWERS));
+                ol.answers { @for decision in first { (answer(decision)) } }
+                @if !more.is_empty() {
+                    details {
+                        summary { (more.len()) " more decisions" }
+                        ol.answers { @for decision in more { (answer(decision)) } }
                     }
                 }
             }
+        }
+    }
+}
+
+fn answer(decision: &Decision) -> Markup {
+    html! {
+        li {
+            p.headline {
+                @if decision.question.is_empty() { (clock(decision.at)) " – " (decision.headline) }
+                @else { (decision.question) }
+            }
+            p { @for sentence in &decision.answer { (sentence) " " } }
+            @if let Some(change) = &decision.smallest_change { p { (change) } }
+            p { a href={ "#decision-" (decision.number) } { "Decision " (decision.number) " round by round" } }
         }
     }
 }

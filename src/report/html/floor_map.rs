@@ -18,6 +18,9 @@ const PERSON: f64 = 0.25;
 /// Marks closer than this share a disc, in metres.
 const APART: f64 = 0.8;
 
+/// Numbers on a disc; it says that there are more.
+const MOST_ON_A_MARK: usize = 4;
+
 /// All floors on which the robot was; an empty building tells nothing.
 pub(super) fn floors(page: &Page, moments: &[KeyMoment]) -> Markup {
     html! {
@@ -170,6 +173,7 @@ struct Mark {
     x: f64,
     y: f64,
     label: String,
+    moments: usize,
 }
 
 impl Mark {
@@ -187,9 +191,19 @@ fn marks(page: &Page, floor: usize, moments: &[KeyMoment]) -> Vec<Mark> {
         let close = |mark: &&mut Mark| libm::hypot(mark.x - pose.x, mark.y - pose.y) < APART;
         match marks.iter_mut().find(close) {
             Some(mark) => {
-                let _ = write!(mark.label, " {}", moment.number);
+                mark.moments = mark.moments.saturating_add(1);
+                match mark.moments {
+                    ..=MOST_ON_A_MARK => {
+                        let _ = write!(mark.label, " {}", moment.number);
+                    }
+                    more if more == MOST_ON_A_MARK.saturating_add(1) => mark.label.push_str(" …"),
+                    _ => {}
+                }
             }
-            None => marks.push(Mark { x: pose.x, y: pose.y, label: moment.number.to_string() }),
+            None => {
+                let label = moment.number.to_string();
+                marks.push(Mark { x: pose.x, y: pose.y, label, moments: 1 });
+            }
         }
     }
     marks
