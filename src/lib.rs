@@ -44,6 +44,7 @@
 //! | [`scenario`] | who asks for what, when and where: the file format |
 //! | [`run`] | the mission drives the simulated robot |
 //! | [`trace`] | a run as evidence: written, read back, replayed |
+//! | [`report`] | a trace as a page for people |
 //! | [`mod@case`] | a trace's decisions, each with what it takes to make it again |
 //! | [`mod@explain`] | why was Bob made to wait? For anybody, one user, the auditor |
 //! | [`seal`] | signatures, encryption and commitments of traces |
@@ -72,6 +73,7 @@ pub mod precedence;
 pub mod record;
 pub mod regret;
 pub mod replicate;
+pub mod report;
 pub mod run;
 pub mod scenario;
 pub mod seal;

@@ -58,7 +58,10 @@ fn an_existing_decision_is_replaced_whole() {
         fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     files.sort();
     let keys = ["auditor.key", "auditor.pub", "robot.key", "robot.pub"];
-    assert_eq!(files, [&keys[..2], &["decision.json"], &keys[2..], &["run.svg", "trace.mcap"]].concat());
+    assert_eq!(
+        files,
+        [&keys[..2], &["decision.json", "report.html"], &keys[2..], &["run.svg", "trace.mcap"]].concat()
+    );
 }
 
 #[test]

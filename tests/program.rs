@@ -35,6 +35,7 @@ fn help_is_as_it_was() {
         ("help_policies", &["policies", "--help"]),
         ("help_graph", &["graph", "--help"]),
         ("help_simulate", &["simulate", "--help"]),
+        ("help_report", &["report", "--help"]),
         ("help_keygen", &["keygen", "--help"]),
         ("help_audit", &["audit", "--help"]),
         ("help_unseal", &["unseal", "--help"]),

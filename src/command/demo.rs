@@ -1,14 +1,14 @@
 //! `selfneg demo`: the paper's mall.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use selfneg_core::Options;
 
 use super::simulate::{play, told};
-use super::{CommandError, Report, Status, json, key_files, trace_file, write_whole};
-use crate::audit::{self, Audit, Keys, Redecided};
+use super::{CommandError, Report, Status, json, key_files, report, write_whole};
+use crate::audit::{self, Keys, Redecided};
 use crate::binding::{BoundRules, GoalChoice};
 use crate::demo;
 use crate::precedence::{Policy, decide};
@@ -19,8 +19,8 @@ use crate::story;
 /// The paper's mall: Bob interrupts while the robot serves Alice. Needs no input
 #[derive(Debug, Args)]
 pub(super) struct Demo {
-    /// Folder to write decision.json, trace.mcap and run.svg into, with the keys that sign and
-    /// seal the trace; made if need be
+    /// Folder to write decision.json, trace.mcap, run.svg and report.html into, with the keys
+    /// that sign and seal the trace; made if need be
     #[arg(long, value_name = "DIR", default_value = "selfneg-demo")]
     out: PathBuf,
     /// Print the decision as one JSON document instead of the story
@@ -37,10 +37,14 @@ impl Demo {
         let decision = decide(&rules, &users, Options::default(), Policy::Published)?;
         let document = json(&DecisionRecord::new(&decision, &users, &rules))?;
         let scenario = demo::scenario()?;
-        let [decided, recorded, drawn] =
-            ["decision.json", "trace.mcap", "run.svg"].map(|name| self.out.join(name));
+        let [decided, recorded, drawn, reported] =
+            ["decision.json", "trace.mcap", "run.svg", "report.html"].map(|name| self.out.join(name));
         write_whole(&decided, &document)?;
         let (signer, auditor) = key_files::of_folder(&self.out)?;
+        let keys = Keys {
+            robots: vec![signer.public()],
+            identities: key_files::auditor_keys(&[self.out.join("auditor.key")])?,
+        };
         let seal = Seal {
             privacy: Privacy::Sealed(vec![auditor]),
             signer: Some(signer),
@@ -48,7 +52,7 @@ impl Demo {
         };
         let ran = play(&scenario, false, Some((&recorded, seal)))?;
         write_whole(&drawn, &ran.sketch.to_svg())?;
-        let found = self.audited(&recorded)?;
+        let found = report::write(&recorded, &keys, &reported)?;
         let status = if found.status == audit::Status::Ok { Status::Passed } else { Status::Failed };
         if self.json {
             return Ok(Report { output: document, warnings: Vec::new(), status });
@@ -68,23 +72,16 @@ impl Demo {
         );
         let _ = writeln!(
             output,
-            "Audited with these keys it is {}: {} of {} decisions made again to the same rounds",
+            "Audited with these keys it is {}: {} of {} decisions made again to the same rounds\nThe report, for \
+             people, is {}",
             found.status,
             found.decisions.iter().filter(|decision| decision.redecided == Redecided::Same).count(),
-            found.decisions.len()
+            found.decisions.len(),
+            reported.display()
         );
         if status != Status::Passed {
             let _ = write!(output, "\n{}", found.tell(&recorded.display().to_string()));
         }
         Ok(Report { output, warnings: Vec::new(), status })
-    }
-
-    /// What an auditor makes of the trace, with the keys of the folder.
-    fn audited(&self, trace: &Path) -> Result<Audit, CommandError> {
-        let keys = Keys {
-            robots: vec![key_files::robot_public_key(&self.out.join("robot.pub"))?],
-            identities: key_files::auditor_keys(&[self.out.join("auditor.key")])?,
-        };
-        Ok(audit::audit(&trace_file::read(trace)?, &keys))
     }
 }

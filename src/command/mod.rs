@@ -23,6 +23,7 @@ mod progress;
 mod rank_range;
 mod regret;
 mod replicate;
+mod report;
 mod simulate;
 mod trace_file;
 mod unseal;
@@ -70,6 +71,7 @@ enum Command {
     Negotiate(negotiate::Negotiate),
     Simulate(simulate::Simulate),
     Explain(explain::Explain),
+    Report(report::Report),
     Keygen(keygen::Keygen),
     Audit(audit::Audit),
     Unseal(unseal::Unseal),
@@ -221,6 +223,7 @@ impl Program {
             Command::Negotiate(negotiate) => negotiate.run(),
             Command::Simulate(simulate) => simulate.run(),
             Command::Explain(explain) => explain.run(),
+            Command::Report(report) => report.run(),
             Command::Keygen(keygen) => keygen.run(),
             Command::Audit(audit) => audit.run(),
             Command::Unseal(unseal) => unseal.run(),

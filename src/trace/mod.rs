@@ -38,7 +38,7 @@ pub use encode::{EncodedEvent, EncodedOutput, Encoder, Open};
 pub use erasing::{EraseError, Erased, erase};
 pub use error::TraceError;
 pub use format::{FORMAT_KEY, FORMAT_MAJOR, FORMAT_MINOR, FORMAT_RECORD, PROGRAM, UNSEALED_RECORD};
-pub use opening::{Opened, PersonalPart, Unopened, open};
+pub use opening::{Opened, PersonalPart, Unopened, messages, open};
 pub use reader::{Added, Channel, Message, Note, Reader};
 pub(crate) use recording::is_decision;
 pub use recording::{Entry, Recording, Step};

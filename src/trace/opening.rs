@@ -74,6 +74,17 @@ pub fn open(bytes: &[u8], identities: &[AuditorKey]) -> Result<Opened, TraceErro
     Ok(Opened { recording, seal: verify(&scan), privacy, erased, unopened })
 }
 
+/// All messages of a whole file in memory, those for viewers included, with what the keys open in
+/// the place where it was written. Of a damaged file those before the damage.
+///
+/// # Errors
+/// As for [`open`].
+pub fn messages(bytes: &[u8], identities: &[AuditorKey]) -> Result<Vec<Message>, TraceError> {
+    let scan = Scan::of(bytes);
+    let decrypted = decrypt(&scan, identities)?;
+    Ok(merge(&scan, &decrypted.messages).into_iter().cloned().collect())
+}
+
 /// What is in the segments of a trace.
 #[derive(Debug)]
 pub(super) struct Decrypted {
