@@ -5,6 +5,7 @@
     clippy::expect_used,
     clippy::panic,
     clippy::indexing_slicing,
+    clippy::cast_possible_truncation,
     reason = "a test may panic"
 )]
 
@@ -165,12 +166,15 @@ fn forged(bytes: &[u8], kind: u8, change: impl Fn(&mut Vec<u8>)) -> Vec<u8> {
     out
 }
 
+/// What is changed, in the body of which record, and how.
+type Change = (&'static str, u8, fn(&mut Vec<u8>));
+
 #[test]
 fn every_index_leads_to_what_is_there() {
     let (bytes, keys) = signed();
     let same = forged(&bytes, op::MESSAGE_INDEX, |_| ());
     assert_eq!(audit(&same, &keys).status, Status::Ok);
-    let changes: [(&str, u8, fn(&mut Vec<u8>)); 9] = [
+    let changes: [Change; 9] = [
         ("a message index to another place", op::MESSAGE_INDEX, |body| body[14] ^= 1),
         ("a message index of another channel", op::MESSAGE_INDEX, |body| body[0] ^= 1),
         ("a time in a message index", op::MESSAGE_INDEX, |body| body[6] ^= 1),
