@@ -52,6 +52,7 @@
 //! | [`fleet`] | thousands of audited traces as tables |
 //! | [`demo`] | the paper's mall |
 //! | [`mission`] | the robot architecture as a state machine, around the decision |
+//! | [`printable`] | names of files as one line on a terminal |
 //! | [`command`] | the command line |
 #![forbid(unsafe_code)]
 
@@ -70,6 +71,7 @@ pub mod mission;
 pub mod optimum;
 pub mod policies;
 pub mod precedence;
+pub mod printable;
 pub mod record;
 pub mod regret;
 pub mod replicate;

@@ -1,11 +1,11 @@
 //! The `selfneg` program: prints what a command reports.
 
-use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
 use selfneg::command::{Program, Status};
+use selfneg::printable::one_line;
 
 fn main() -> ExitCode {
     let program = match Program::try_parse() {
@@ -52,17 +52,9 @@ fn unwritten(error: &io::Error) -> ExitCode {
     ExitCode::from(2)
 }
 
-/// One line on standard error. Names come from files and may hold anything, so control
-/// characters are written as escapes. If nobody takes the line, there is nobody to tell.
+/// One line on standard error. Names come from files and may hold anything. If nobody takes the
+/// line, there is nobody to tell.
 fn complain(kind: &str, text: &str) {
-    let mut line = format!("{kind}: ");
-    for letter in text.chars() {
-        if letter.is_control() {
-            let _ = write!(line, "{}", letter.escape_default());
-        } else {
-            line.push(letter);
-        }
-    }
-    line.push('\n');
+    let line = format!("{kind}: {}\n", one_line(text));
     let _ = io::stderr().write_all(line.as_bytes());
 }

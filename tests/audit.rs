@@ -53,6 +53,19 @@ fn audit(folder: &TempDir, arguments: &[&str], code: i32) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
+/// What people read of a trace that is not ok.
+fn told(folder: &TempDir, arguments: &[&str]) -> String {
+    let output = within(folder).arg("audit").args(arguments).assert().code(1).get_output().clone();
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// What came of a property of the only trace.
+fn result(found: &Value, name: &str) -> String {
+    let properties = found["traces"][0]["properties"].as_array().unwrap();
+    let property = properties.iter().find(|property| property["name"] == name).unwrap();
+    property["result"].as_str().unwrap().to_owned()
+}
+
 /// The status of the only trace.
 fn status(folder: &TempDir, arguments: &[&str]) -> String {
     let found = audit(folder, arguments, 1);
@@ -134,12 +147,22 @@ fn what_is_missing_is_told_apart(folder: &TempDir) {
     let other_auditor = ["--robot-key", "robot.pub", "--identity", "others/auditor.key"];
     assert_eq!(status(folder, &with("mall.mcap", &other_auditor)), "incomplete");
     assert_eq!(status(folder, &with("mall.mcap", &["--robot-key", "others/robot.pub"])), "untrusted");
+    let said = told(folder, &with("mall.mcap", &other_auditor));
+    assert!(said.contains("the identity given does not open the personal data"), "{said}");
+    assert!(!said.contains("no identity was given"), "{said}");
     // Several keys: the right ones among them.
     let all = [&KEYS[..], &["--robot-key", "others/robot.pub", "--identity", "others/auditor.key"]].concat();
     audit(folder, &with("mall.mcap", &all), 0);
     write("erased.mcap", &whole);
     within(folder).args(["erase", "erased.mcap", "user-2"]).assert().success();
     let found = audit(folder, &with("erased.mcap", &KEYS), 1);
+    assert_eq!(result(&found, "replay"), "held-in-part");
+    assert_eq!(result(&found, "redecision"), "not-checked");
+    assert_eq!(result(&found, "hard-ethics"), "nothing-to-check");
+    let said = told(folder, &with("erased.mcap", &KEYS));
+    assert!(said.contains("erased: what shows several people at once, user-2"), "{said}");
+    assert!(said.contains("the personal data that show several people at once are erased"), "{said}");
+    assert!(said.contains("\n  held as far as it could be checked: replay, commitments\n"), "{said}");
     assert_eq!(found["traces"][0]["status"], "incomplete");
     assert!(found["traces"][0]["erased"].as_array().unwrap().contains(&Value::from("user-2")));
     within(folder)
@@ -160,6 +183,8 @@ fn paths(folder: &TempDir) {
     {
         fs::copy(here(&format!("{from}.mcap")), here(to)).unwrap();
     }
+    // Whatever the case of the ending.
+    fs::copy(here("mall.mcap"), here("all/below/d.MCAP")).unwrap();
     fs::write(here("all/notes.txt"), "no trace").unwrap();
     fs::write(here("other.mcap"), "no trace").unwrap();
     let files = |found: &Value| -> Vec<String> {
@@ -168,7 +193,10 @@ fn paths(folder: &TempDir) {
     };
     // A folder sorted, arguments in their order.
     let found = audit(folder, &[&["mall.mcap", "all"][..], &KEYS].concat(), 0);
-    assert_eq!(files(&found), ["mall.mcap", "all/a.mcap", "all/b.mcap", "all/below/c.mcap"]);
+    assert_eq!(
+        files(&found),
+        ["mall.mcap", "all/a.mcap", "all/b.mcap", "all/below/c.mcap", "all/below/d.MCAP"]
+    );
     // What is no trace among traces is a failure; alone it is unusable.
     let found = audit(folder, &[&["other.mcap", "mall.mcap"][..], &KEYS].concat(), 1);
     assert_eq!(found["traces"][0]["status"], "unreadable");
@@ -178,8 +206,28 @@ fn paths(folder: &TempDir) {
     let arguments = [&["audit", "nowhere.mcap", "mall.mcap", "--json"][..], &KEYS].concat();
     let output = within(folder).args(&arguments).assert().code(2).get_output().clone();
     let found: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(files(&found), ["mall.mcap"]);
+    assert_eq!(files(&found), ["nowhere.mcap", "mall.mcap"]);
+    assert_eq!(
+        (&found["traces"][0]["status"], &found["traces"][1]["status"]),
+        (&"unreadable".into(), &"ok".into())
+    );
+    let what = found["traces"][0]["findings"][0]["what"].as_str().unwrap();
+    assert!(what.starts_with("cannot be read: "), "{what}");
+    let found = audit(folder, &["nowhere.mcap", "empty"], 2);
+    assert_eq!(files(&found), ["nowhere.mcap", "empty"]);
     assert!(String::from_utf8(output.stderr).unwrap().starts_with("warning: nowhere.mcap"), "no warning");
+    // Their names are no lines of ours.
+    if cfg!(unix) {
+        let name = "x\n1 trace: 1 ok\u{1b}[8m\u{202e}.mcap";
+        fs::copy(here("other.mcap"), here(name)).unwrap();
+        let output = within(folder).args(["audit", "mall.mcap", name, "nor\u{202e}.mcap"]).output().unwrap();
+        for said in [output.stdout, output.stderr] {
+            let said = String::from_utf8(said).unwrap();
+            assert!(said.contains(r"\u{202e}.mcap"), "{said}");
+            assert!(!said.contains(['\u{1b}', '\u{202e}']) && !said.contains("\n1 trace: 1 ok"), "{said}");
+        }
+        fs::remove_file(here(name)).unwrap();
+    }
     let refused = |arguments: &[&str]| refusal(within(folder).arg("audit").args(arguments), Path::new("."));
     assert!(refused(&["nowhere.mcap"]).starts_with("nowhere.mcap"));
     assert!(refused(&["empty"]).starts_with("empty: no trace in this folder"));

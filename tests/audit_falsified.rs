@@ -18,9 +18,10 @@ use std::sync::OnceLock;
 use prost::Message as _;
 use random_mission::Choice;
 use rewriting::Pieces;
-use selfneg::audit::{Audit, Keys, Status, audit};
+use selfneg::audit::{Audit, Keys, Property, Redecided, Status, Verdict as Checked, audit};
 use selfneg::input::Truth;
 use selfneg::mission::{Evidence, LOCATION, Profile, Stated, UserData};
+use selfneg::seal::AuditorKey;
 use selfneg::seal::chain::rules_digest;
 use selfneg::trace::PERSONAL;
 use selfneg::trace::schema::evidence::record::Record;
@@ -401,6 +402,52 @@ fn what_is_personal() {
     insta::assert_snapshot!("what_is_personal", tale.0);
 }
 
+fn result(audit: &Audit, property: Property) -> Checked {
+    audit.properties.iter().find(|one| one.name == property.name()).unwrap().result
+}
+
+#[test]
+fn what_cannot_be_checked_is_told_from_what_is_not_there() {
+    use Checked::{Held, NotChecked, NothingToCheck};
+    let found = audited(honest());
+    for property in Property::ALL {
+        assert_eq!(result(&found, property), Held, "{}", property.name());
+    }
+    let found = audited_openly(honest());
+    for property in [Property::Redecision, Property::Replay, Property::Commitments] {
+        assert_eq!(result(&found, property), NotChecked, "{}", property.name());
+    }
+    assert!(found.decisions.iter().all(|one| one.redecided == Redecided::Unchecked), "{found:#?}");
+    // Nobody negotiates, so there is no decision to make again.
+    let choices = vec![Choice::Request(1, 0), Choice::Answer(data([1; 6], &[]))];
+    let alone = Pieces::of(&random_mission::trace(choices, Options::default(), None));
+    let found = audited(&alone);
+    assert_eq!(result(&found, Property::Redecision), NothingToCheck);
+    assert_eq!(result(&found, Property::Replay), Held);
+    let found = audited_openly(&alone);
+    assert_eq!(result(&found, Property::Redecision), NothingToCheck);
+    assert_eq!(result(&found, Property::Replay), NotChecked);
+}
+
+#[test]
+fn what_is_said_to_be_sealed_and_is_not_there_is_not_sealed_to_others() {
+    let mut pieces = honest().clone();
+    pieces.messages.retain(|message| !message.topic.starts_with(PERSONAL));
+    pieces.renumber();
+    let place = pieces.messages.iter().position(|message| &*message.schema == "selfneg.v1.Header").unwrap();
+    let mut header = evidence::Header::decode(pieces.messages[place].data.as_slice()).unwrap();
+    header.set_privacy(evidence::Privacy::Sealed);
+    pieces.messages[place].data = header.encode_to_vec();
+    let identities = vec![AuditorKey::generate()];
+    for identities in [Vec::new(), identities] {
+        let found = audit(&pieces.to_bytes(), &Keys { robots: Vec::new(), identities });
+        let said = found.tell("run.mcap");
+        assert!(said.contains("its personal data are said to be sealed, and none are in it"), "{said}");
+        assert!(said.contains("no personal data are in it"), "{said}");
+        assert!(!said.contains("other keys"), "{said}");
+    }
+}
+
 #[test]
 fn limits_that_no_memory_holds_are_not_run() {
     let mut pieces = honest().clone();
@@ -421,6 +468,7 @@ fn limits_that_no_memory_holds_are_not_run() {
     header.rules_digest = rules_digest(&options, &header.policy, &rules.encode_to_vec()).to_vec();
     pieces.messages[header_at].data = header.encode_to_vec();
     let found = audited(&pieces);
-    assert_eq!(found.redecided(), 1, "the emergency alone: {:#?}", found.findings);
+    assert_eq!(found.redecided(), 0, "not the emergency either: {:#?}", found.findings);
+    assert_eq!(result(&found, Property::Replay), Checked::NotChecked);
     assert!(found.findings.iter().any(|finding| finding.what.contains("limits")), "{found:#?}");
 }

@@ -199,6 +199,20 @@ fn no_cell_names_a_condition_a_goal_or_a_user() {
 }
 
 #[test]
+fn a_path_that_cannot_be_opened_is_a_row() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("new/tables");
+    let done = audit(true, &["not-there.mcap", "--parquet", out.to_str().unwrap()]);
+    assert_eq!(done.status.code(), Some(2));
+    let said = String::from_utf8(done.stderr).unwrap();
+    assert!(said.starts_with("warning: not-there.mcap: cannot be read: "), "{said}");
+    let traces = rows(&folder, "traces");
+    assert_eq!(traces.len(), SEEDS.len() + 2);
+    let last = traces.last().unwrap();
+    assert_eq!((text(&last["file"]), text(&last["status"])), (Some("not-there.mcap"), Some("unreadable")));
+}
+
+#[test]
 fn the_summary_alone_is_printed() {
     let (folder, printed) = tables(true);
     let lines: Vec<&str> = printed.lines().collect();

@@ -377,7 +377,7 @@ fn a_sealed_trace_is_unsealed_and_a_person_erased() {
     insta::assert_snapshot!("erase_again", printed(within(&folder).args(["erase", "out.mcap", "user-2"])));
     let run = within(&folder).args(unseal).assert().success();
     let told = String::from_utf8(run.get_output().stderr.clone()).unwrap();
-    assert_eq!(told, "warning: out.mcap: erased: several, user-2\n");
+    assert_eq!(told, "warning: out.mcap: erased: what shows several people at once, user-2\n");
 }
 
 /// What can be read of a cut trace is unsealed, and the exit code says that it is not all.

@@ -6,6 +6,8 @@ use serde::Serialize;
 
 use super::{Audit, DecisionAudit, Finding, PropertyResult, Redecided, SealAudit, Status, Verdict, Welfare};
 use crate::mission::UserId;
+use crate::printable::one_line;
+use crate::trace::Whose;
 
 /// What `selfneg audit --json` says of one trace.
 #[derive(Clone, Debug, Serialize)]
@@ -71,12 +73,12 @@ impl Audit {
             (Status::Ok, false) => ", as far as it could be checked",
             _ => "",
         };
-        let mut text = format!("{file}: {}{but}\n", self.status);
+        let mut text = format!("{}: {}{but}\n", one_line(file), self.status);
         if let Some(seal) = &self.seal {
             tell_seal(seal, &mut text);
         }
         if !self.erased.is_empty() {
-            let _ = writeln!(text, "  erased: {}", self.erased.join(", "));
+            let _ = writeln!(text, "  erased: {}", erased(&self.erased));
         }
         if !self.decisions.is_empty() {
             text.push('\n');
@@ -102,9 +104,11 @@ impl Audit {
             mine.map(|property| property.name).collect::<Vec<_>>().join(", ")
         };
         for (what, result) in [
-            ("held", Verdict::Held),
             ("violated", Verdict::Violated),
-            ("nothing to check on", Verdict::Unchecked),
+            ("held", Verdict::Held),
+            ("held as far as it could be checked", Verdict::HeldInPart),
+            ("not checked, as said above", Verdict::NotChecked),
+            ("nothing to check on", Verdict::NothingToCheck),
         ] {
             let names = named(result);
             if !names.is_empty() {
@@ -114,6 +118,16 @@ impl Audit {
         text.push('\n');
         text
     }
+}
+
+/// Whose data are erased, in words.
+pub(crate) fn erased(subjects: &[String]) -> String {
+    let several = Whose::Several.to_string();
+    let subjects: Vec<&str> = subjects
+        .iter()
+        .map(|subject| if *subject == several { "what shows several people at once" } else { subject })
+        .collect();
+    subjects.join(", ")
 }
 
 fn tell_seal(seal: &SealAudit, text: &mut String) {

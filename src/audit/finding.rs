@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use serde::{Serialize, Serializer};
 
-use super::property::Property;
+use super::property::{Property, PropertyResult, Verdict};
 use super::status::Status;
 
 /// Findings beyond so many are counted and not kept.
@@ -129,6 +129,8 @@ pub(super) struct Log {
     pub(super) more: u64,
     /// For each property how often it was checked, and how often it did not hold.
     pub(super) tallies: [(u64, u64); Property::ALL.len()],
+    /// For each property whether some of what it is checked on could not be.
+    pub(super) in_part: [bool; Property::ALL.len()],
     pub(super) worst: Option<Status>,
 }
 
@@ -153,6 +155,27 @@ impl Log {
         if let Some((checked, _)) = self.tallies.get_mut(property.place()) {
             *checked = checked.saturating_add(times);
         }
+    }
+
+    /// There was something to check a property on, and not what is needed for it.
+    pub(super) fn not_checked(&mut self, property: Property) {
+        if let Some(in_part) = self.in_part.get_mut(property.place()) {
+            *in_part = true;
+        }
+    }
+
+    /// What came of a property.
+    pub(super) fn result(&self, property: Property) -> PropertyResult {
+        let (checked, broken) = self.tallies.get(property.place()).copied().unwrap_or_default();
+        let in_part = self.in_part.get(property.place()).copied().unwrap_or_default();
+        let result = match (checked, broken, in_part) {
+            (0, _, true) => Verdict::NotChecked,
+            (0, _, false) => Verdict::NothingToCheck,
+            (_, 0, true) => Verdict::HeldInPart,
+            (_, 0, false) => Verdict::Held,
+            _ => Verdict::Violated,
+        };
+        PropertyResult { name: property.name(), result, checked }
     }
 
     /// A property was checked once, and did not hold.

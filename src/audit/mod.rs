@@ -43,6 +43,7 @@ mod wiping;
 use std::time::Duration;
 
 pub use document::AuditRecord;
+pub(crate) use document::erased;
 pub use finding::{Finding, Place};
 pub use property::{Property, PropertyResult, Verdict};
 pub(crate) use redecide::redecided;
@@ -118,11 +119,20 @@ impl Audit {
         self.decisions.iter().filter(|decision| decision.redecided != Redecided::Unchecked).count()
     }
 
-    /// Of what cannot be opened.
+    /// Of what cannot be read as a trace.
     #[must_use]
     pub fn unreadable(error: &TraceError) -> Self {
-        let what = printable(&error.to_string());
-        let finding = Finding { at: place_of(error), what, status: Status::Unreadable };
+        Self::nothing(place_of(error), &error.to_string())
+    }
+
+    /// Of a file that cannot be opened, for this reason.
+    #[must_use]
+    pub fn unopened(why: &str) -> Self {
+        Self::nothing(Place::WHOLE, why)
+    }
+
+    fn nothing(at: Place, what: &str) -> Self {
+        let finding = Finding { at, what: printable(what), status: Status::Unreadable };
         Self {
             status: Status::Unreadable,
             decisions: Vec::new(),
@@ -156,17 +166,9 @@ pub fn audit_opened(opened: &Opened, keys: &Keys) -> Audit {
         log.find(status, place_of(damage), format!("{damage}; what is before it was audited"));
     }
     let seal = seal::check(opened, keys, &mut log);
-    let examination = Examination::new(opened, &mut log);
+    let examination = Examination::new(opened, !keys.identities.is_empty(), &mut log);
     let (decisions, unchecked) = examination.run(&mut log);
-    let properties = Property::ALL.map(|property| {
-        let (checked, broken) = log.tallies.get(property.place()).copied().unwrap_or_default();
-        let result = match (checked, broken) {
-            (0, _) => Verdict::Unchecked,
-            (_, 0) => Verdict::Held,
-            _ => Verdict::Violated,
-        };
-        PropertyResult { name: property.name(), result, checked }
-    });
+    let properties = Property::ALL.map(|property| log.result(property));
     Audit {
         status: log.worst.unwrap_or(Status::Ok),
         decisions,
@@ -194,13 +196,15 @@ fn place_of(error: &TraceError) -> Place {
 /// The checks of what is recorded, whatever the seal says.
 struct Examination<'o> {
     opened: &'o Opened,
+    /// Whether any identity was given.
+    identified: bool,
     recording: &'o Recording,
     turns: Vec<Turn<'o>>,
     in_force: Option<InForce>,
 }
 
 impl<'o> Examination<'o> {
-    fn new(opened: &'o Opened, log: &mut Log) -> Self {
+    fn new(opened: &'o Opened, identified: bool, log: &mut Log) -> Self {
         let recording = &opened.recording;
         let header = &recording.header;
         let options = header.options.as_ref().and_then(options_in);
@@ -210,7 +214,7 @@ impl<'o> Examination<'o> {
             let what = "the header names no variant and policy that this program knows";
             log.find(Status::Unreadable, Place::WHOLE, what);
         }
-        Self { opened, recording, turns: turn::turns(recording), in_force }
+        Self { opened, identified, recording, turns: turn::turns(recording), in_force }
     }
 
     fn run(&self, log: &mut Log) -> (Vec<DecisionAudit>, Vec<String>) {
@@ -240,7 +244,13 @@ impl<'o> Examination<'o> {
         self.carried_out(&docket, log);
         wiping::check(&self.turns, log);
         hard_ethics::check(&self.recording.header, &self.turns, log);
-        self.personal(&cases, &mut unchecked, log);
+        let run_again = self.personal(&cases, &mut unchecked, log);
+        // What makes an emergency's decision is the mission alone.
+        for (case, decision) in cases.iter().zip(&mut decisions) {
+            if matches!(case, Case::Emergency(emergency) if !run_again.reaches(emergency.index)) {
+                decision.redecided = Redecided::Unchecked;
+            }
+        }
         (decisions, unchecked)
     }
 
@@ -293,7 +303,10 @@ impl<'o> Examination<'o> {
                 redecided = redecide::check(case, inputs, log);
                 welfare = redecide::welfare(recorded, inputs);
             }
-            Err(error) => self.not_made_again(case, error, unchecked, log),
+            Err(error) => {
+                log.not_checked(Property::Redecision);
+                self.not_made_again(case, error, unchecked, log);
+            }
         }
         DecisionAudit {
             decision: recorded.decision,
@@ -393,7 +406,7 @@ impl<'o> Examination<'o> {
     }
 
     /// What needs the personal part.
-    fn personal(&self, cases: &[Case], unchecked: &mut Vec<String>, log: &mut Log) {
+    fn personal(&self, cases: &[Case], unchecked: &mut Vec<String>, log: &mut Log) -> RunAgain {
         let sealed = matches!(self.opened.privacy, PersonalPart::Open);
         seal::check_commitments(self.recording, sealed, log);
         let rules = match crate::case::rules_to_run(self.recording) {
@@ -406,15 +419,17 @@ impl<'o> Examination<'o> {
                         format!("the mission cannot be run again: {error}"),
                     );
                 }
+                log.not_checked(Property::Replay);
                 unchecked.push(self.why_nothing_personal(cases.len(), &error));
-                return;
+                return RunAgain::No;
             }
         };
         let erased = !self.opened.erased.is_empty();
         match replay::check(self.recording, rules, &self.turns, erased, log) {
-            replay::Extent::Whole => {}
+            replay::Extent::Whole => RunAgain::Whole,
             replay::Extent::Until(at) => {
                 let entry = at.entry.unwrap_or_default();
+                log.not_checked(Property::Replay);
                 if self.has_everything() && entry < self.recording.personal_until {
                     log.find(Status::Incomplete, at, "the personal part of an event is missing");
                 } else {
@@ -422,9 +437,12 @@ impl<'o> Examination<'o> {
                         "the mission was run again up to {at} only: the personal part of what follows is not there"
                     ));
                 }
+                RunAgain::Before(entry)
             }
             replay::Extent::Unknown(at, what) => {
+                log.not_checked(Property::Replay);
                 log.find(Status::Violation, at, format!("an event that no robot records: {what}"));
+                RunAgain::Before(at.entry.unwrap_or_default())
             }
         }
     }
@@ -432,7 +450,9 @@ impl<'o> Examination<'o> {
     fn why_nothing_personal(&self, decisions: usize, error: &str) -> String {
         let why = match self.opened.privacy {
             PersonalPart::LeftOut => "the personal data were left out",
-            PersonalPart::Locked => "no identity that opens the personal data was given",
+            PersonalPart::Locked if self.opened.segments == 0 => "no personal data are in it",
+            PersonalPart::Locked if self.identified => "the identity given does not open the personal data",
+            PersonalPart::Locked => "no identity was given that opens the personal data",
             PersonalPart::Plain | PersonalPart::Open => error,
         };
         let decisions = if decisions == 1 {
@@ -443,6 +463,25 @@ impl<'o> Examination<'o> {
         format!(
             "{decisions} not made again, nor the mission run again, nor commitments opened, nor welfare compared: {why}"
         )
+    }
+}
+
+/// How far the mission was run again.
+#[derive(Clone, Copy, Debug)]
+enum RunAgain {
+    No,
+    /// To this entry, and not with it.
+    Before(u64),
+    Whole,
+}
+
+impl RunAgain {
+    const fn reaches(self, index: u64) -> bool {
+        match self {
+            Self::No => false,
+            Self::Before(end) => index < end,
+            Self::Whole => true,
+        }
     }
 }
 

@@ -106,10 +106,14 @@ pub struct PropertyResult {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// Wherever it was checked.
+    /// Everywhere.
     Held,
+    /// Wherever it could be checked. For more of the trace what is needed is not there.
+    HeldInPart,
     /// Not everywhere.
     Violated,
-    /// There was nothing to check it on, or not what is needed for it.
-    Unchecked,
+    /// There was nothing to check it on.
+    NothingToCheck,
+    /// What is needed to check it is not there, or not open.
+    NotChecked,
 }

@@ -8,7 +8,7 @@ use super::property::Property;
 use super::status::Status;
 use crate::seal::chain::rules_digest;
 use crate::seal::{SealPlace, SealReport, SealState};
-use crate::trace::{Commitment, Opened, PersonalPart, Recording};
+use crate::trace::{Commitment, Opened, PersonalPart, Recording, Whose};
 use prost::Message as _;
 
 /// What an audit says of a seal.
@@ -56,6 +56,13 @@ pub(super) fn check(opened: &Opened, keys: &Keys, log: &mut Log) -> Option<SealA
         PersonalPart::LeftOut => {
             log.find(Status::Incomplete, Place::WHOLE, "its personal data were left out");
         }
+        PersonalPart::Locked if opened.segments == 0 => {
+            // Where all of them are erased, that is said below.
+            if opened.erased.is_empty() {
+                let what = "its personal data are said to be sealed, and none are in it";
+                log.find(Status::Incomplete, Place::WHOLE, what);
+            }
+        }
         PersonalPart::Locked if !keys.identities.is_empty() => {
             log.find(
                 Status::Incomplete,
@@ -66,7 +73,11 @@ pub(super) fn check(opened: &Opened, keys: &Keys, log: &mut Log) -> Option<SealA
         PersonalPart::Locked | PersonalPart::Open => {}
     }
     for subject in &opened.erased {
-        log.find(Status::Incomplete, Place::WHOLE, format!("the personal data of {subject} are erased"));
+        let what = match *subject == Whose::Several.to_string() {
+            true => "the personal data that show several people at once are erased".to_owned(),
+            false => format!("the personal data of {subject} are erased"),
+        };
+        log.find(Status::Incomplete, Place::WHOLE, what);
     }
     audit
 }
@@ -121,6 +132,11 @@ pub(super) fn check_commitments(recording: &Recording, sealed: bool, log: &mut L
             let what = "the rules are not those that the header has a digest of";
             log.broken(Property::Commitments, Place::WHOLE, what);
         }
+    }
+    let digest_alone = recording.rules.is_none() && !recording.header.rules_digest.is_empty();
+    let is_closed = |(.., commitment): &(u64, u32, _, Commitment)| matches!(commitment, Commitment::Closed);
+    if digest_alone || recording.commitments().iter().any(is_closed) {
+        log.not_checked(Property::Commitments);
     }
     if !sealed {
         return;

@@ -10,11 +10,12 @@ use serde::Serialize;
 
 use super::key_files::{auditor_keys, robot_public_key};
 use super::parquet_folder::ParquetFolder;
-use super::{CommandError, Report, Status, json, progress, trace_file};
+use super::{CommandError, Report, Status, json, overwriting, progress, trace_file};
 use crate::audit::{self, AuditRecord, Keys};
 use crate::fleet::{RowCounts, Tables, TraceRows};
 use crate::input::InputError;
-use crate::trace::open;
+use crate::printable::one_line;
+use crate::trace::{Opened, open};
 
 /// Check traces: seal, properties, and every decision made again from its inputs
 ///
@@ -23,7 +24,7 @@ use crate::trace::open;
 /// not checked. docs/audit.md says what every status means.
 #[derive(Debug, Args)]
 pub(super) struct Audit {
-    /// Traces, or folders with traces (*.mcap, also in folders below)
+    /// Traces, or folders with traces (*.mcap or *.MCAP, also in folders below)
     #[arg(value_name = "TRACE", required = true)]
     traces: Vec<PathBuf>,
     /// A robot's public key whose signature is trusted; may be given several times
@@ -57,42 +58,55 @@ impl Audit {
             robots: robots.collect::<Result<_, _>>()?,
             identities: if self.identity.is_empty() { Vec::new() } else { auditor_keys(&self.identity)? },
         };
-        let (mut files, mut unusable) = (Vec::new(), Vec::new());
+        let mut files: Vec<(PathBuf, Option<Box<CommandError>>)> = Vec::new();
         for path in &self.traces {
             match traces_at(path) {
-                Ok(found) => files.extend(found),
-                Err(error) => unusable.push(error),
+                Ok(found) => files.extend(found.into_iter().map(|file| (file, None))),
+                Err(error) => files.push((path.clone(), Some(Box::new(error)))),
+            }
+        }
+        if let Some(folder) = &self.parquet {
+            for table in Tables::<fs::File>::FILES {
+                let keys = self.robot_key.iter().chain(&self.identity);
+                let read = files.iter().map(|(file, _)| file).chain(keys).map(PathBuf::as_path);
+                overwriting::refuse(&folder.join(table), read)?;
             }
         }
         let bar =
             progress::bar(u64::try_from(files.len()).unwrap_or(u64::MAX), "{bar:20} {pos} of {len} traces");
         let mut tables = self.parquet.as_deref().map(ParquetFolder::create).transpose()?;
-        let mut done = Vec::new();
+        let (mut done, mut unusable, mut opened) = (Vec::new(), Vec::new(), 0_usize);
         // In the order of the files, whatever the order in which they are done. Each worker
         // holds one file at a time, and of it keeps what is printed or written.
-        for batch in files.chunks(BATCH) {
+        for batch in files.chunks_mut(BATCH) {
             let audited: Vec<_> = batch
-                .par_iter()
-                .map(|file| {
-                    let audited = trace_file::read(file).map(|bytes| self.audited(file, &bytes, &keys));
+                .par_iter_mut()
+                .map(|(file, error)| {
+                    let bytes = match error.take() {
+                        None => trace_file::read(file),
+                        Some(error) => Err(*error),
+                    };
+                    let audited = match bytes {
+                        Ok(bytes) => (self.audited(file, &bytes, &keys), None),
+                        Err(error) => (self.unopened(file, &error), Some(error)),
+                    };
                     bar.inc(1);
                     audited
                 })
                 .collect();
-            for audited in audited {
-                match audited {
-                    Ok(mut audited) => {
-                        if let (Some(tables), Some(rows)) = (&mut tables, audited.rows.take()) {
-                            tables.push(*rows)?;
-                        }
-                        done.push(audited);
-                    }
-                    Err(error) => unusable.push(error),
+            for (mut audited, error) in audited {
+                if let (Some(tables), Some(rows)) = (&mut tables, audited.rows.take()) {
+                    tables.push(*rows)?;
+                }
+                done.push(audited);
+                match error {
+                    None => opened = opened.saturating_add(1),
+                    Some(error) => unusable.push(error),
                 }
             }
         }
         bar.finish_and_clear();
-        if done.is_empty() {
+        if opened == 0 && (done.is_empty() || !self.json || self.parquet.is_some()) {
             return Err(unusable.into_iter().next().unwrap_or_else(|| {
                 CommandError::Arguments(
                     "no trace was given, expected a file or a folder of traces".to_owned(),
@@ -124,6 +138,17 @@ impl Audit {
             Ok(opened) => audit::audit_opened(opened, keys),
             Err(error) => audit::Audit::unreadable(error),
         };
+        self.kept(file, opened.ok().as_ref(), &found)
+    }
+
+    /// Of a path at which there is nothing to audit.
+    fn unopened(&self, file: &Path, error: &CommandError) -> Audited {
+        let what = error.to_string();
+        let why = what.strip_prefix(&format!("{}: ", file.display())).unwrap_or(&what);
+        self.kept(file, None, &audit::Audit::unopened(why))
+    }
+
+    fn kept(&self, file: &Path, opened: Option<&Opened>, found: &audit::Audit) -> Audited {
         let name = file.display().to_string();
         let tables = self.parquet.is_some();
         Audited {
@@ -132,7 +157,7 @@ impl Audit {
             redecided: found.redecided(),
             record: self.json.then(|| Box::new(found.record(&name))),
             text: if self.json || tables { String::new() } else { found.tell(&name) },
-            rows: tables.then(|| Box::new(TraceRows::of(&name, opened.as_ref().ok(), &found))),
+            rows: tables.then(|| Box::new(TraceRows::of(&name, opened, found))),
         }
     }
 }
@@ -172,7 +197,9 @@ fn below(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), CommandError> {
         // A link to a folder may lead back here, and is not followed.
         if kind.is_dir() {
             below(&path, found)?;
-        } else if path.extension().is_some_and(|extension| extension == "mcap") && path.is_file() {
+        } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"))
+            && path.is_file()
+        {
             found.push(path);
         }
     }
@@ -190,7 +217,9 @@ fn told(done: &[Audited], tables: Option<(&Path, RowCounts)>) -> String {
         let _ = writeln!(
             text,
             "{}: one row for each of {traces} traces, {decisions} decisions and {rounds} rounds.",
-            Tables::<fs::File>::FILES.map(|name| folder.join(name).display().to_string()).join(", ")
+            Tables::<fs::File>::FILES
+                .map(|name| one_line(&folder.join(name).display().to_string()))
+                .join(", ")
         );
     }
     text

@@ -6,7 +6,8 @@ use clap::Args;
 
 use super::key_files::auditor_keys;
 use super::private_file::{Readers, replace};
-use super::{CommandError, Report, Status, trace_file};
+use super::{CommandError, Report, Status, overwriting, trace_file};
+use crate::printable::one_line;
 use crate::trace::{Recording, erase, open};
 
 /// Erase a person's data from a sealed trace; the seal of the rest stays valid
@@ -29,6 +30,8 @@ pub(super) struct Erase {
 
 impl Erase {
     pub(super) fn run(&self) -> Result<Report, CommandError> {
+        let out = self.out.as_ref().unwrap_or(&self.trace);
+        overwriting::refuse(out, self.identity.iter().map(PathBuf::as_path))?;
         let keys = auditor_keys(&self.identity)?;
         let bytes = trace_file::read(&self.trace)?;
         let unerasable = |source| CommandError::Unerasable { file: self.trace.clone(), source };
@@ -43,16 +46,15 @@ impl Erase {
             }
         }
         let erased = erase(&bytes, &subject).map_err(unerasable)?;
-        let out = self.out.as_ref().unwrap_or(&self.trace);
         replace(out, &erased.bytes, Readers::Anybody)?;
+        let file = one_line(&out.display().to_string());
         let output = if erased.own == 0 {
-            format!("{}: the data of {subject} were erased before.\n", out.display())
+            format!("{file}: the data of {subject} were erased before.\n")
         } else {
             format!(
-                "{}: erased {} of {subject}, and {} about several people at once (the story, the robot's \
+                "{file}: erased {} of {subject}, and {} about several people at once (the story, the robot's \
                  path). The signatures of the rest stay valid.\nCopies, backups and what the disk keeps of \
                  the file as it was are not reached.\n",
-                out.display(),
                 segments(erased.own),
                 segments(erased.several)
             )

@@ -15,6 +15,7 @@ mod lint;
 mod negotiate;
 mod optimum;
 mod options;
+mod overwriting;
 mod parquet_folder;
 mod policies;
 mod present;

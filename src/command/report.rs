@@ -1,12 +1,14 @@
 //! `selfneg report`: a trace as a page for people.
 
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::key_files::{auditor_keys, robot_public_key};
-use super::{CommandError, Report as Said, Status, trace_file, write_whole};
+use super::{CommandError, Report as Said, Status, overwriting, trace_file, write_whole};
 use crate::audit::{self, Audit, Keys};
+use crate::printable::one_line;
 use crate::report::{File, Page};
 
 /// Make a report of a trace for people: one HTML file that needs nothing else
@@ -32,11 +34,13 @@ pub(super) struct Report {
 
 impl Report {
     pub(super) fn run(&self) -> Result<Said, CommandError> {
+        let read = iter::once(&self.trace).chain(&self.identity).chain(&self.robot_key);
+        overwriting::refuse(&self.output, read.map(PathBuf::as_path))?;
         let robots = self.robot_key.iter().map(|file| robot_public_key(file));
         let keys =
             Keys { robots: robots.collect::<Result<_, _>>()?, identities: auditor_keys(&self.identity)? };
         let found = write(&self.trace, &keys, &self.output)?;
-        let output = format!("The report is in {}\n", self.output.display());
+        let output = format!("The report is in {}\n", one_line(&self.output.display().to_string()));
         let (warnings, status) = match found.status {
             audit::Status::Unreadable
             | audit::Status::Tampered

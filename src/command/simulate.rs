@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io;
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -13,7 +14,7 @@ use serde::Serialize;
 
 use super::durable::Durable;
 use super::key_files::{auditor_public_keys, random, robot_key};
-use super::{CommandError, Report, Status, json, progress, write_whole};
+use super::{CommandError, Report, Status, json, overwriting, progress, write_whole};
 use crate::mission::{Closing, Refusal, Staff};
 use crate::run::{Ended, HowItEnded, Outcome, Sketch, Storybook, Told, Watcher, clock, run};
 use crate::scenario::Scenario;
@@ -60,6 +61,10 @@ struct Document<'a> {
 
 impl Simulate {
     pub(super) fn run(&self) -> Result<Report, CommandError> {
+        let read = || iter::once(&self.scenario).chain(&self.sign).chain(&self.seal).map(PathBuf::as_path);
+        for written in self.trace.iter().chain(&self.picture) {
+            overwriting::refuse(written, read())?;
+        }
         let scenario = Scenario::open(&self.scenario)?;
         let record = match &self.trace {
             Some(file) => Some((file.as_path(), self.seal()?)),

@@ -114,7 +114,7 @@ impl Teller<'_> {
         let what = last.discloses.as_ref()?;
         (negotiated.agreement && last.verdict == Some("accept")).then(|| {
             format!(
-                "With {what:?} disclosed, {sender}'s offer weighed {value} by {receiver}'s profile, and \
+                "Once {what:?} was disclosed, {sender}'s offer weighed {value} by {receiver}'s profile, and \
                  {receiver}'s own complete offer {threshold}."
             )
         })

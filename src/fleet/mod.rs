@@ -2,7 +2,7 @@
 //!
 //! One row per trace, per decision and per round. Users stand in them by pseudonym, and what
 //! is personal has no column: `docs/fleet.md` lists all columns. Rows are written in groups
-//! of [`ROWS_IN_GROUP`], so memory does not grow with the number of traces.
+//! of [`ROWS_IN_GROUP`], and no more of a table is kept in memory but what its footer will say.
 
 mod rows;
 pub mod schema;

@@ -1,9 +1,9 @@
 //! Who signed the trace, and where what is personal is, in words.
 
 use super::page::Fact;
-use crate::audit::SealAudit;
+use crate::audit::{SealAudit, erased};
 use crate::seal::SealState;
-use crate::trace::{Opened, PersonalPart, Whose};
+use crate::trace::{Opened, PersonalPart};
 
 /// What the page says of the seal.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,6 +41,9 @@ impl Seal {
         let mut privacy = match opened.privacy {
             PersonalPart::Plain => "What is personal is in the open, for everybody who has the file.",
             PersonalPart::LeftOut => "What is personal was left out when the trace was written.",
+            PersonalPart::Locked if opened.segments == 0 => {
+                "What is personal is said to be sealed, and nothing personal is in it."
+            }
             PersonalPart::Locked => "What is personal is sealed, and no key given here opens it.",
             PersonalPart::Open => {
                 "What is personal is sealed, and was opened with an auditor’s key for this page."
@@ -48,7 +51,7 @@ impl Seal {
         }
         .to_owned();
         if !opened.erased.is_empty() {
-            privacy.push_str(&format!(" Erased: {}.", erased(opened)));
+            privacy.push_str(&format!(" Erased: {}.", erased(&opened.erased)));
         }
         Self { signature, privacy, facts: facts(audit) }
     }
@@ -78,7 +81,10 @@ fn facts(audit: Option<&SealAudit>) -> Vec<Fact> {
 /// Why something personal is not shown, and what would show it.
 pub(super) fn why_hidden(opened: &Opened) -> String {
     match opened.privacy {
-        PersonalPart::Locked => {
+        PersonalPart::Locked if opened.segments == 0 && opened.erased.is_empty() => {
+            "The trace says that it is sealed, and does not hold it.".to_owned()
+        }
+        PersonalPart::Locked if opened.segments > 0 => {
             let to = match &opened.seal {
                 SealState::Signed(report) if !report.recipients.is_empty() => {
                     let recipients: Vec<String> = report.recipients.iter().map(ToString::to_string).collect();
@@ -92,21 +98,13 @@ pub(super) fn why_hidden(opened: &Opened) -> String {
             "It was left out when the trace was written; nothing brings it back. Record with --seal to keep it."
                 .to_owned()
         }
-        PersonalPart::Plain | PersonalPart::Open if !opened.erased.is_empty() => {
-            format!("It was erased ({}); nothing brings it back.", erased(opened))
+        PersonalPart::Plain | PersonalPart::Open | PersonalPart::Locked if !opened.erased.is_empty() => {
+            format!("It was erased ({}); nothing brings it back.", erased(&opened.erased))
         }
-        PersonalPart::Plain | PersonalPart::Open => "The trace does not hold it, or ends before.".to_owned(),
+        PersonalPart::Plain | PersonalPart::Open | PersonalPart::Locked => {
+            "The trace does not hold it, or ends before.".to_owned()
+        }
     }
-}
-
-/// Whose data are erased.
-fn erased(opened: &Opened) -> String {
-    let several = Whose::Several.to_string();
-    let subject = |subject: &String| {
-        if *subject == several { "what shows several people at once".to_owned() } else { subject.clone() }
-    };
-    let subjects: Vec<String> = opened.erased.iter().map(subject).collect();
-    subjects.join(", ")
 }
 
 /// `1 decision`, `2 decisions`.

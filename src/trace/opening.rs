@@ -28,6 +28,9 @@ pub struct Opened {
     pub seal: SealState,
     /// Where the personal part is.
     pub privacy: PersonalPart,
+    /// How many segments of a sealed trace hold something personal, opened or not. Those of a
+    /// flush that was cut do not count.
+    pub segments: usize,
     /// The subjects some of whose data were erased.
     pub erased: Vec<String>,
     /// Segments that should open and do not.
@@ -70,8 +73,8 @@ pub fn open(bytes: &[u8], identities: &[AuditorKey]) -> Result<Opened, TraceErro
     let decrypted = decrypt(&scan, identities)?;
     let merged = merge(&scan, &decrypted.messages);
     let recording = Recording::of(&scan, merged.into_iter())?;
-    let Decrypted { privacy, erased, unopened, .. } = decrypted;
-    Ok(Opened { recording, seal: verify(&scan), privacy, erased, unopened })
+    let Decrypted { privacy, segments, erased, unopened, .. } = decrypted;
+    Ok(Opened { recording, seal: verify(&scan), privacy, segments, erased, unopened })
 }
 
 /// All messages of a whole file in memory, those for viewers included, with what the keys open in
@@ -91,6 +94,8 @@ pub(super) struct Decrypted {
     /// In the order in which they were written.
     pub(super) messages: Vec<Message>,
     pub(super) privacy: PersonalPart,
+    /// How many segments hold a ciphertext.
+    pub(super) segments: usize,
     pub(super) erased: Vec<String>,
     pub(super) unopened: Vec<Unopened>,
 }
@@ -107,7 +112,8 @@ pub(super) fn decrypt(scan: &Scan, identities: &[AuditorKey]) -> Result<Decrypte
         Privacy::LeftOut => PersonalPart::LeftOut,
         Privacy::Sealed => PersonalPart::Locked,
     };
-    let mut decrypted = Decrypted { messages: Vec::new(), privacy, erased: Vec::new(), unopened: Vec::new() };
+    let mut decrypted =
+        Decrypted { messages: Vec::new(), privacy, segments: 0, erased: Vec::new(), unopened: Vec::new() };
     if privacy != PersonalPart::Locked {
         return Ok(decrypted);
     }
@@ -117,6 +123,7 @@ pub(super) fn decrypt(scan: &Scan, identities: &[AuditorKey]) -> Result<Decrypte
     let mut inner = Vec::new();
     for Found { sequence, sealed } in found {
         let Some(ciphertext) = sealed.ciphertext.as_deref() else { continue };
+        decrypted.segments = decrypted.segments.saturating_add(1);
         let what = match opened(&sealed, ciphertext, trace, identities) {
             Ok(messages) => {
                 decrypted.privacy = PersonalPart::Open;

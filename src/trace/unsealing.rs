@@ -8,7 +8,7 @@ use prost::Message as _;
 use super::copying::Copy;
 use super::error::TraceError;
 use super::format::{FORMAT_KEY, FORMAT_RECORD, UNSEALED_RECORD};
-use super::opening::{Opened, PersonalPart, decrypt, merge};
+use super::opening::{Decrypted, Opened, PersonalPart, decrypt, merge};
 use super::recording::{Recording, decoded};
 use super::scan::Scan;
 use super::schema::Schema;
@@ -83,8 +83,8 @@ pub fn unseal(bytes: &[u8], identities: &[AuditorKey]) -> Result<Unsealed, Unsea
         sequence = sequence.checked_add(1).ok_or_else(|| io::Error::other("too many messages"))?;
     }
     let bytes = copy.finish()?;
-    let (privacy, erased, unopened) = (decrypted.privacy, decrypted.erased, decrypted.unopened);
-    Ok(Unsealed { bytes, opened: Opened { recording, seal, privacy, erased, unopened } })
+    let Decrypted { privacy, segments, erased, unopened, .. } = decrypted;
+    Ok(Unsealed { bytes, opened: Opened { recording, seal, privacy, segments, erased, unopened } })
 }
 
 fn recipients(scan: &Scan) -> String {

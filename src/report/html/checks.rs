@@ -97,8 +97,10 @@ fn made_again(audit: &Audit) -> String {
 fn row(property: &PropertyResult) -> Markup {
     let (class, sign, word) = match property.result {
         Verdict::Held => ("accept", "✓", "held"),
+        Verdict::HeldInPart => ("hold", "✓", "held as far as it could be checked"),
         Verdict::Violated => ("reject", "✗", "violated"),
-        Verdict::Unchecked => ("hold", "–", "not checked"),
+        Verdict::NotChecked => ("hold", "–", "not checked"),
+        Verdict::NothingToCheck => ("hold", "–", "nothing to check on"),
     };
     let said = Property::ALL.into_iter().find(|known| known.name() == property.name).map(says);
     html! {
