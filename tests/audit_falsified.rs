@@ -81,6 +81,18 @@ fn honest() -> &'static Pieces {
     PIECES.get_or_init(|| Pieces::of(&random_mission::trace(story(), Options::default(), None)))
 }
 
+/// The story goes on: Carol's goal is reached, Alice withdraws, and the mission is ended while
+/// Bob waits.
+fn honest_to_the_end() -> &'static Pieces {
+    static PIECES: OnceLock<Pieces> = OnceLock::new();
+    PIECES.get_or_init(|| {
+        let mut choices = story();
+        choices.extend(std::iter::repeat_n(Choice::Done, 6));
+        choices.extend([Choice::Withdraw(1), Choice::Shutdown]);
+        Pieces::of(&random_mission::trace(choices, Options::default(), None))
+    })
+}
+
 fn audited(pieces: &Pieces) -> Audit {
     audit(&pieces.to_bytes(), &Keys::default())
 }
@@ -343,6 +355,104 @@ fn emergencies() {
         }),
     );
     insta::assert_snapshot!("emergencies", tale.0);
+}
+
+/// What nobody tells, and what happened otherwise, shows in the open records alone.
+#[test]
+fn the_course_of_goals_and_requests() {
+    let mut tale = Tale::default();
+    assert_eq!(findings(&audited(honest_to_the_end())), "");
+    assert_eq!(findings(&audited_openly(honest_to_the_end())), "");
+    // What the mission run again replies is long, and told of other records elsewhere.
+    let told = |change: &dyn Fn(&mut Pieces)| {
+        let mut pieces = honest_to_the_end().clone();
+        change(&mut pieces);
+        let (whole, open) = (audited(&pieces), audited_openly(&pieces));
+        (whole.status, open.status, findings(&open))
+    };
+    let drop_all = |is: fn(&Record) -> bool| {
+        move |pieces: &mut Pieces| {
+            let mut left = pieces.count(is);
+            assert!(left > 0);
+            while left > 0 {
+                pieces.take_out(is);
+                left -= 1;
+            }
+        }
+    };
+    tale.add(
+        "neither_data_nor_wipes_are_told",
+        told(&drop_all(|record| {
+            matches!(record, Record::DataAccepted(_) | Record::Wiped(_) | Record::Lifecycle(_))
+        })),
+    );
+    tale.add(
+        "no_wipe_of_a_snapshot_is_told",
+        told(&drop_all(|record| match record {
+            Record::Wiped(wiped) => wiped.component() != evidence::Component::ContextEthicsManager,
+            Record::Lifecycle(_) => true,
+            _ => false,
+        })),
+    );
+    tale.add("nobody_is_put_off", told(&drop_all(|record| matches!(record, Record::Deferred(_)))));
+    tale.add("no_request_is_closed", told(&drop_all(|record| matches!(record, Record::Closed(_)))));
+    let ended = |from: evidence::GoalEnd, to: evidence::GoalEnd| {
+        record(move |record| match record {
+            Record::GoalEnded(ended) if ended.end() == from => {
+                ended.set_end(to);
+                true
+            }
+            _ => false,
+        })
+    };
+    use evidence::GoalEnd::{Failed, Preempted, Reached};
+    tale.add("preempted_is_reached", told(&ended(Preempted, Reached)));
+    tale.add("reached_is_preempted", told(&ended(Reached, Preempted)));
+    tale.add("reached_is_failed", told(&ended(Reached, Failed)));
+    tale.add("no_goal_ends", told(&drop_all(|record| matches!(record, Record::GoalEnded(_)))));
+    tale.add(
+        "put_off_too_often",
+        told(&record(|record| match record {
+            Record::Deferred(deferred) => {
+                deferred.times = 99;
+                true
+            }
+            _ => false,
+        })),
+    );
+    tale.add(
+        "closed_for_another_reason",
+        told(&record(|record| match record {
+            Record::Closed(closed) => {
+                closed.set_how(evidence::Closing::StaffDeferredTooOften);
+                true
+            }
+            _ => false,
+        })),
+    );
+    let ending = |pieces: &mut Pieces| {
+        pieces.change_record(|record| match record {
+            Record::EmergencyUnverified(_) => {
+                *record = Record::ShuttingDown(evidence::Mark {});
+                true
+            }
+            _ => false,
+        });
+    };
+    tale.add("an_end_that_nobody_asked_for", told(&ending));
+    tale.add(
+        "an_end_that_excuses_an_emergency",
+        told(&|pieces: &mut Pieces| {
+            ending(pieces);
+            pieces.take_out(|record| {
+                matches!(record, Record::GoalStarted(started) if matches!(
+                    started.served.as_ref().and_then(|served| served.served.as_ref()),
+                    Some(served::Served::Emergency(_))
+                ))
+            });
+        }),
+    );
+    insta::assert_snapshot!("the_course_of_goals_and_requests", tale.0);
 }
 
 #[test]
