@@ -511,12 +511,11 @@ fn what_is_personal() {
     insta::assert_snapshot!("what_is_personal", tale.0);
 }
 
-#[test]
-fn limits_that_no_memory_holds_are_not_run() {
+/// The honest trace as if its robot had been given other limits.
+fn with_limits(change: impl Fn(&mut evidence::Limits)) -> Pieces {
     let mut pieces = honest().clone();
     let forge = |specification: &mut Option<evidence::Specification>| {
-        let limits = specification.as_mut().unwrap().limits.as_mut().unwrap();
-        (limits.users, limits.requests, limits.conditions, limits.profiles) = (255, 255, 65_000, 255);
+        change(specification.as_mut().unwrap().limits.as_mut().unwrap());
     };
     let of = |pieces: &Pieces, schema: &str| {
         pieces.messages.iter().position(|message| &*message.schema == schema).unwrap()
@@ -530,7 +529,25 @@ fn limits_that_no_memory_holds_are_not_run() {
     let options = header.options.clone().unwrap();
     header.rules_digest = rules_digest(&options, &header.policy, &rules.encode_to_vec()).to_vec();
     pieces.messages[header_at].data = header.encode_to_vec();
-    let found = audited(&pieces);
+    pieces
+}
+
+#[test]
+fn limits_that_no_memory_holds_are_not_run() {
+    let found = audited(&with_limits(|limits| {
+        (limits.users, limits.requests, limits.conditions, limits.profiles) = (255, 255, 65_000, 255);
+    }));
     assert_eq!(found.redecided(), 1, "the emergency alone: {:#?}", found.findings);
     assert!(found.findings.iter().any(|finding| finding.what.contains("limits")), "{found:#?}");
+}
+
+/// Whatever limits a robot takes, the auditor takes.
+#[test]
+fn the_largest_limits_of_a_robot_are_run() {
+    let found = audited(&with_limits(|limits| {
+        (limits.users, limits.requests, limits.conditions, limits.profiles) = (255, 255, 3_000, 255);
+    }));
+    assert_eq!(found.redecided(), 3);
+    assert_eq!(findings(&found), "");
+    assert!(found.unchecked.is_empty(), "{:?}", found.unchecked);
 }
