@@ -551,3 +551,11 @@ fn the_largest_limits_of_a_robot_are_run() {
     assert_eq!(findings(&found), "");
     assert!(found.unchecked.is_empty(), "{:?}", found.unchecked);
 }
+
+#[test]
+fn no_more_emergencies_wait_than_the_robot_keeps() {
+    let found = audited_openly(&with_limits(|limits| limits.emergencies = 0));
+    assert_eq!(found.status, Status::Violation);
+    let told = findings(&found);
+    assert!(told.contains("more emergencies wait than the robot keeps"), "{told}");
+}

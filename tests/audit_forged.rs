@@ -207,7 +207,7 @@ fn few_bytes_do_not_become_many() {
     ]
     .concat();
     let channel = [&1_u16.to_le_bytes()[..], &[0; 2], &1_u32.to_le_bytes(), b"x", &[0; 8]].concat();
-    let mut bytes = [&mcap::MAGIC[..], &record(4, &channel)].concat();
+    let mut bytes = [mcap::MAGIC, &record(4, &channel)].concat();
     for _ in 0..20 {
         bytes.extend(record(6, &chunk));
     }

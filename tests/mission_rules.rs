@@ -695,7 +695,7 @@ mod specifications {
         assert!(matches!(refused(|s| s.goals[0].tasks.clear()), SpecificationError::NothingToDo(_)));
         assert!(matches!(refused(|s| s.limits.users = 1), SpecificationError::Size { .. }));
         let most = |s: &mut Specification| {
-            (s.limits.users, s.limits.conditions, s.limits.requests) = (255, 60_000, 255)
+            (s.limits.users, s.limits.conditions, s.limits.requests) = (255, 60_000, 255);
         };
         assert!(matches!(refused(most), SpecificationError::Size { what: "limits", .. }));
         assert!(matches!(

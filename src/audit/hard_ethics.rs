@@ -8,6 +8,9 @@ use crate::trace::schema::evidence::{
     EmergencyClaim, Evidence, GoalEnd, Header, Proof, Staff, event::Event, record::Record, served::Served,
 };
 
+/// No robot keeps more: their number is one byte of its limits.
+const MAX_EMERGENCIES: u32 = 255;
+
 /// Checks all turns of a trace.
 pub(super) fn check(header: &Header, turns: &[Turn<'_>], log: &mut Log) {
     let mut watch = Watch {
@@ -98,7 +101,11 @@ impl Watch<'_> {
                         self.broken(at, "an emergency is decided that nobody claimed so");
                     }
                     if !staff.is_some_and(|why| self.is_handed_over(why)) {
-                        self.waiting.push(known.category);
+                        if self.is_full() {
+                            self.broken(at, "more emergencies wait than the robot keeps");
+                        } else {
+                            self.waiting.push(known.category);
+                        }
                     }
                 }
                 Record::GoalStarted(started) => {
@@ -144,7 +151,7 @@ impl Watch<'_> {
     fn is_full(&self) -> bool {
         let limits = self.header.specification.as_ref().and_then(|one| one.limits.as_ref());
         let waiting = u32::try_from(self.waiting.len()).unwrap_or(u32::MAX);
-        limits.is_none_or(|limits| waiting >= limits.emergencies)
+        limits.is_none_or(|limits| waiting >= limits.emergencies.min(MAX_EMERGENCIES))
     }
 
     /// What the mission makes of a claim.
