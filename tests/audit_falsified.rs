@@ -82,6 +82,18 @@ fn honest() -> &'static Pieces {
     PIECES.get_or_init(|| Pieces::of(&random_mission::trace(story(), Options::default(), None)))
 }
 
+/// The story goes on: Carol's goal is reached, Alice withdraws, and the mission is ended while
+/// Bob waits.
+fn honest_to_the_end() -> &'static Pieces {
+    static PIECES: OnceLock<Pieces> = OnceLock::new();
+    PIECES.get_or_init(|| {
+        let mut choices = story();
+        choices.extend(std::iter::repeat_n(Choice::Done, 6));
+        choices.extend([Choice::Withdraw(1), Choice::Shutdown]);
+        Pieces::of(&random_mission::trace(choices, Options::default(), None))
+    })
+}
+
 fn audited(pieces: &Pieces) -> Audit {
     audit(&pieces.to_bytes(), &Keys::default())
 }
@@ -346,6 +358,104 @@ fn emergencies() {
     insta::assert_snapshot!("emergencies", tale.0);
 }
 
+/// What nobody tells, and what happened otherwise, shows in the open records alone.
+#[test]
+fn the_course_of_goals_and_requests() {
+    let mut tale = Tale::default();
+    assert_eq!(findings(&audited(honest_to_the_end())), "");
+    assert_eq!(findings(&audited_openly(honest_to_the_end())), "");
+    // What the mission run again replies is long, and told of other records elsewhere.
+    let told = |change: &dyn Fn(&mut Pieces)| {
+        let mut pieces = honest_to_the_end().clone();
+        change(&mut pieces);
+        let (whole, open) = (audited(&pieces), audited_openly(&pieces));
+        (whole.status, open.status, findings(&open))
+    };
+    let drop_all = |is: fn(&Record) -> bool| {
+        move |pieces: &mut Pieces| {
+            let mut left = pieces.count(is);
+            assert!(left > 0);
+            while left > 0 {
+                pieces.take_out(is);
+                left -= 1;
+            }
+        }
+    };
+    tale.add(
+        "neither_data_nor_wipes_are_told",
+        told(&drop_all(|record| {
+            matches!(record, Record::DataAccepted(_) | Record::Wiped(_) | Record::Lifecycle(_))
+        })),
+    );
+    tale.add(
+        "no_wipe_of_a_snapshot_is_told",
+        told(&drop_all(|record| match record {
+            Record::Wiped(wiped) => wiped.component() != evidence::Component::ContextEthicsManager,
+            Record::Lifecycle(_) => true,
+            _ => false,
+        })),
+    );
+    tale.add("nobody_is_put_off", told(&drop_all(|record| matches!(record, Record::Deferred(_)))));
+    tale.add("no_request_is_closed", told(&drop_all(|record| matches!(record, Record::Closed(_)))));
+    let ended = |from: evidence::GoalEnd, to: evidence::GoalEnd| {
+        record(move |record| match record {
+            Record::GoalEnded(ended) if ended.end() == from => {
+                ended.set_end(to);
+                true
+            }
+            _ => false,
+        })
+    };
+    use evidence::GoalEnd::{Failed, Preempted, Reached};
+    tale.add("preempted_is_reached", told(&ended(Preempted, Reached)));
+    tale.add("reached_is_preempted", told(&ended(Reached, Preempted)));
+    tale.add("reached_is_failed", told(&ended(Reached, Failed)));
+    tale.add("no_goal_ends", told(&drop_all(|record| matches!(record, Record::GoalEnded(_)))));
+    tale.add(
+        "put_off_too_often",
+        told(&record(|record| match record {
+            Record::Deferred(deferred) => {
+                deferred.times = 99;
+                true
+            }
+            _ => false,
+        })),
+    );
+    tale.add(
+        "closed_for_another_reason",
+        told(&record(|record| match record {
+            Record::Closed(closed) => {
+                closed.set_how(evidence::Closing::StaffDeferredTooOften);
+                true
+            }
+            _ => false,
+        })),
+    );
+    let ending = |pieces: &mut Pieces| {
+        pieces.change_record(|record| match record {
+            Record::EmergencyUnverified(_) => {
+                *record = Record::ShuttingDown(evidence::Mark {});
+                true
+            }
+            _ => false,
+        });
+    };
+    tale.add("an_end_that_nobody_asked_for", told(&ending));
+    tale.add(
+        "an_end_that_excuses_an_emergency",
+        told(&|pieces: &mut Pieces| {
+            ending(pieces);
+            pieces.take_out(|record| {
+                matches!(record, Record::GoalStarted(started) if matches!(
+                    started.served.as_ref().and_then(|served| served.served.as_ref()),
+                    Some(served::Served::Emergency(_))
+                ))
+            });
+        }),
+    );
+    insta::assert_snapshot!("the_course_of_goals_and_requests", tale.0);
+}
+
 #[test]
 fn what_is_personal() {
     let mut tale = Tale::default();
@@ -448,12 +558,11 @@ fn what_is_said_to_be_sealed_and_is_not_there_is_not_sealed_to_others() {
     }
 }
 
-#[test]
-fn limits_that_no_memory_holds_are_not_run() {
+/// The honest trace as if its robot had been given other limits.
+fn with_limits(change: impl Fn(&mut evidence::Limits)) -> Pieces {
     let mut pieces = honest().clone();
     let forge = |specification: &mut Option<evidence::Specification>| {
-        let limits = specification.as_mut().unwrap().limits.as_mut().unwrap();
-        (limits.users, limits.requests, limits.conditions, limits.profiles) = (255, 255, 65_000, 255);
+        change(specification.as_mut().unwrap().limits.as_mut().unwrap());
     };
     let of = |pieces: &Pieces, schema: &str| {
         pieces.messages.iter().position(|message| &*message.schema == schema).unwrap()
@@ -467,8 +576,34 @@ fn limits_that_no_memory_holds_are_not_run() {
     let options = header.options.clone().unwrap();
     header.rules_digest = rules_digest(&options, &header.policy, &rules.encode_to_vec()).to_vec();
     pieces.messages[header_at].data = header.encode_to_vec();
-    let found = audited(&pieces);
+    pieces
+}
+
+#[test]
+fn limits_that_no_memory_holds_are_not_run() {
+    let found = audited(&with_limits(|limits| {
+        (limits.users, limits.requests, limits.conditions, limits.profiles) = (255, 255, 65_000, 255);
+    }));
     assert_eq!(found.redecided(), 0, "not the emergency either: {:#?}", found.findings);
     assert_eq!(result(&found, Property::Replay), Checked::NotChecked);
     assert!(found.findings.iter().any(|finding| finding.what.contains("limits")), "{found:#?}");
+}
+
+/// Whatever limits a robot takes, the auditor takes.
+#[test]
+fn the_largest_limits_of_a_robot_are_run() {
+    let found = audited(&with_limits(|limits| {
+        (limits.users, limits.requests, limits.conditions, limits.profiles) = (255, 255, 3_000, 255);
+    }));
+    assert_eq!(found.redecided(), 3);
+    assert_eq!(findings(&found), "");
+    assert!(found.unchecked.is_empty(), "{:?}", found.unchecked);
+}
+
+#[test]
+fn no_more_emergencies_wait_than_the_robot_keeps() {
+    let found = audited_openly(&with_limits(|limits| limits.emergencies = 0));
+    assert_eq!(found.status, Status::Violation);
+    let told = findings(&found);
+    assert!(told.contains("more emergencies wait than the robot keeps"), "{told}");
 }

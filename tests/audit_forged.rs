@@ -51,6 +51,13 @@ fn audited(pieces: &Pieces) -> Audit {
     audit(&pieces.to_bytes(), &Keys::default())
 }
 
+fn openly_pieces() -> Pieces {
+    let mut pieces = honest();
+    pieces.messages.retain(|message| !message.topic.starts_with(PERSONAL));
+    pieces.renumber();
+    pieces
+}
+
 fn openly(mut pieces: Pieces) -> Audit {
     pieces.messages.retain(|message| !message.topic.starts_with(PERSONAL));
     pieces.renumber();
@@ -207,4 +214,16 @@ fn few_bytes_do_not_become_many() {
     let scan = Scan::of(&bytes);
     assert!(matches!(scan.damage, Some(TraceError::Unsupported { .. })), "{:?}", scan.damage);
     assert_eq!(scan.messages.len(), 5);
+}
+
+/// Two bytes of the file would take 72 of memory.
+#[test]
+fn a_header_that_no_memory_holds_is_not_read() {
+    let mut pieces = openly_pieces();
+    let mut header = evidence::Header::decode(pieces.messages[0].data.as_slice()).unwrap();
+    header.specification.as_mut().unwrap().goals.resize(3 << 20, evidence::Goal::default());
+    pieces.messages[0].data = header.encode_to_vec();
+    let found = audited(&pieces);
+    assert_eq!(found.status, Status::Unreadable);
+    assert!(found.findings[0].what.contains("more than 4194304 bytes"), "{:#?}", found.findings);
 }

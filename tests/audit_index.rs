@@ -174,7 +174,7 @@ fn every_index_leads_to_what_is_there() {
     let (bytes, keys) = signed();
     let same = forged(&bytes, op::MESSAGE_INDEX, |_| ());
     assert_eq!(audit(&same, &keys).status, Status::Ok);
-    let changes: [Change; 9] = [
+    let changes: [Change; 12] = [
         ("a message index to another place", op::MESSAGE_INDEX, |body| body[14] ^= 1),
         ("a message index of another channel", op::MESSAGE_INDEX, |body| body[0] ^= 1),
         ("a time in a message index", op::MESSAGE_INDEX, |body| body[6] ^= 1),
@@ -184,10 +184,26 @@ fn every_index_leads_to_what_is_there() {
         ("a metadata index to another place", op::METADATA_INDEX, |body| body[0] ^= 1),
         ("the times that a chunk says", op::CHUNK, |body| body[0] ^= 1),
         ("the footer leads elsewhere", op::FOOTER, |body| body[0] ^= 1),
+        ("the footer leads to other offsets", op::FOOTER, |body| body[8] ^= 1),
+        ("a name that writes lines", op::HEADER, |body| body[8] = b'\n'),
+        ("more than a name in the header", op::HEADER, |body| body[4] -= 1),
     ];
     for (name, kind, change) in changes {
         let found = audit(&forged(&bytes, kind, change), &keys);
         assert_eq!(found.status, Status::Tampered, "{name}: {:?}", found.findings);
         assert_eq!(found.decisions.len(), 1, "{name}");
+    }
+}
+
+#[test]
+fn statistics_and_summary_offsets_are_of_what_is_there() {
+    let (bytes, keys) = signed();
+    for (kind, name) in [(op::STATISTICS, "statistics"), (op::SUMMARY_OFFSET, "summary offset")] {
+        let (_, _, body) = records(&bytes).into_iter().find(|(opcode, ..)| *opcode == kind).unwrap();
+        for at in 0..body.len() {
+            let found = audit(&forged(&bytes, kind, |body| body[at] ^= 1), &keys);
+            assert_eq!(found.status, Status::Tampered, "{name}, byte {at}: {:?}", found.findings);
+            assert_eq!(found.decisions.len(), 1, "{name}, byte {at}");
+        }
     }
 }

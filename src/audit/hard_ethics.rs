@@ -8,6 +8,9 @@ use crate::trace::schema::evidence::{
     EmergencyClaim, Evidence, GoalEnd, Header, Proof, Staff, event::Event, record::Record, served::Served,
 };
 
+/// No robot keeps more: their number is one byte of its limits.
+const MAX_EMERGENCIES: u32 = 255;
+
 /// Checks all turns of a trace.
 pub(super) fn check(header: &Header, turns: &[Turn<'_>], log: &mut Log) {
     let mut watch = Watch {
@@ -97,8 +100,12 @@ impl Watch<'_> {
                     if !claimed {
                         self.broken(at, "an emergency is decided that nobody claimed so");
                     }
-                    if !staff.is_some_and(is_handed_over) {
-                        self.waiting.push(known.category);
+                    if !staff.is_some_and(|why| self.is_handed_over(why)) {
+                        if self.is_full() {
+                            self.broken(at, "more emergencies wait than the robot keeps");
+                        } else {
+                            self.waiting.push(known.category);
+                        }
                     }
                 }
                 Record::GoalStarted(started) => {
@@ -107,7 +114,7 @@ impl Watch<'_> {
                 }
                 Record::GoalEnded(ended) => {
                     if let (Pursued::Emergency(category), GoalEnd::Preempted) = (self.pursued, ended.end())
-                        && staff != Some(Staff::NoRoom)
+                        && !(staff == Some(Staff::NoRoom) && self.is_full())
                     {
                         self.waiting.insert(0, category);
                     }
@@ -116,7 +123,8 @@ impl Watch<'_> {
                 }
                 Record::TaskStarted(started) => self.safe = started.interruptible,
                 Record::Held(_) => self.safe = true,
-                Record::ShuttingDown(_) => {
+                // Without the event it excuses nothing; `course` finds fault with it.
+                Record::ShuttingDown(_) if matches!(turn.happened(), Some(Event::Shutdown(_))) => {
                     self.over = true;
                     self.waiting.clear();
                 }
@@ -126,6 +134,24 @@ impl Watch<'_> {
         if !turn.may_be_cut {
             self.still_waiting(at);
         }
+    }
+
+    /// Whether human staff may be called for a certain emergency instead. What the robot is
+    /// capable of is personal.
+    fn is_handed_over(&self, why: Staff) -> bool {
+        match why {
+            Staff::Shutdown => self.over,
+            Staff::NoRoom => self.is_full(),
+            Staff::EmergencyBeyondRobot => true,
+            Staff::DeferredTooOften | Staff::Unspecified => false,
+        }
+    }
+
+    /// Whether as many emergencies wait as the robot keeps.
+    fn is_full(&self) -> bool {
+        let limits = self.header.specification.as_ref().and_then(|one| one.limits.as_ref());
+        let waiting = u32::try_from(self.waiting.len()).unwrap_or(u32::MAX);
+        limits.is_none_or(|limits| waiting >= limits.emergencies.min(MAX_EMERGENCIES))
     }
 
     /// What the mission makes of a claim.
@@ -201,12 +227,5 @@ impl Watch<'_> {
         } else {
             self.log.held(Property::HardEthics);
         }
-    }
-}
-
-fn is_handed_over(why: Staff) -> bool {
-    match why {
-        Staff::Shutdown | Staff::EmergencyBeyondRobot | Staff::NoRoom => true,
-        Staff::DeferredTooOften | Staff::Unspecified => false,
     }
 }

@@ -22,11 +22,13 @@
 //! | --- | --- |
 //! | `protocol` | each negotiation, round by round, from the open records |
 //! | `policy` | each decision from its negotiations |
+//! | `course` | goals and requests, by what happened and was decided |
 //! | `wiping`, `hard_ethics` | nobody's data kept, emergencies first |
 //! | `redecide` | each decision again from its inputs, and its welfare |
 //! | `replay` | the whole mission again |
 //! | `seal` | signatures, recipients, commitments |
 
+mod course;
 mod document;
 mod finding;
 mod hard_ethics;
@@ -242,6 +244,7 @@ impl<'o> Examination<'o> {
             });
         }
         self.carried_out(&docket, log);
+        course::check(&self.recording.header, &self.turns, log);
         wiping::check(&self.turns, log);
         hard_ethics::check(&self.recording.header, &self.turns, log);
         let run_again = self.personal(&cases, &mut unchecked, log);

@@ -3,14 +3,15 @@
 //! The mission holds a user's data from the record that it has accepted them. Whoever is put
 //! off, or whose request is closed, must hold nothing any more when the event that did it is
 //! over; after a decision, or when it is called off, nobody may have a snapshot left; and
-//! every wipe must have left no byte.
+//! every wipe must have left no byte. Who negotiates or is served must have data accepted that
+//! were not wiped since, so that leaving out what was told of them is found as well.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::finding::{Log, Place};
 use super::property::Property;
 use super::turn::Turn;
-use crate::trace::schema::evidence::{Component, Lifecycle, record::Record};
+use crate::trace::schema::evidence::{Component, Lifecycle, event::Event, record::Record, served::Served};
 
 /// What is held of whom.
 #[derive(Debug, Default)]
@@ -19,6 +20,18 @@ struct Held {
     data: BTreeSet<u32>,
     /// Users with a snapshot, and in which components.
     snapshots: BTreeMap<u32, BTreeSet<i32>>,
+}
+
+/// Who holds the snapshot that a user negotiates with.
+const NEGOTIATING: [Component; 2] = [Component::OfferGenerator, Component::EthicalImpactAnalyzer];
+
+impl Held {
+    fn needs_data(&self, user: u32, what: &str, at: Place, log: &mut Log) {
+        if !self.data.contains(&user) {
+            let what = format!("user {user} {what}, and its data were not accepted, or are wiped");
+            log.broken(Property::WipedInTime, at, what);
+        }
+    }
 }
 
 /// Checks all turns of a trace.
@@ -31,6 +44,12 @@ pub(super) fn check(turns: &[Turn<'_>], log: &mut Log) {
             let at = Place::entry(entry.index, entry.at);
             match record {
                 Record::DataAccepted(subject) => {
+                    let given =
+                        matches!(turn.happened(), Some(Event::Data(data)) if data.user == subject.user);
+                    if !given {
+                        let what = format!("data of user {} are accepted that it did not give", subject.user);
+                        log.broken(Property::WipedInTime, at, what);
+                    }
                     held.data.insert(subject.user);
                     done_with.remove(&subject.user);
                 }
@@ -69,7 +88,19 @@ pub(super) fn check(turns: &[Turn<'_>], log: &mut Log) {
                     done_with.insert(closed.user, at);
                 }
                 Record::Decided(_) | Record::NegotiationsDropped(_) => decided = Some(at),
-                Record::NegotiationStarted(_) => decided = None,
+                Record::NegotiationStarted(started) => {
+                    decided = None;
+                    for user in [started.current, started.interrupting] {
+                        held.needs_data(user, "negotiates", at, log);
+                        held.snapshots.entry(user).or_default().extend(NEGOTIATING.map(i32::from));
+                    }
+                }
+                Record::GoalStarted(started) => {
+                    if let Some(Served::User(user)) = started.served.as_ref().and_then(|served| served.served)
+                    {
+                        held.needs_data(user, "is served", at, log);
+                    }
+                }
                 _ => {}
             }
         }

@@ -1,5 +1,7 @@
 //! The negotiations and decisions of a trace, put together from its records.
 
+use std::collections::BTreeMap;
+
 use super::recorded::{
     RecordedDecision, RecordedEmergency, RecordedEnd, RecordedEvent, RecordedNegotiation, RecordedRound,
     Worth, evidence_of, is_certain, options_in, ruling,
@@ -27,8 +29,14 @@ impl Docket {
     /// Reads off a trace what is recorded of its negotiations.
     #[must_use]
     pub fn of(recording: &Recording) -> Self {
-        let mut clerk =
-            Clerk { recording, docket: Self::default(), under_way: None, settled: Vec::new(), told: 0 };
+        let mut clerk = Clerk {
+            recording,
+            docket: Self::default(),
+            under_way: None,
+            settled: Vec::new(),
+            of_user: BTreeMap::new(),
+            told: 0,
+        };
         for entry in &recording.entries {
             if let Step::Reply { open: Open::Record(open), personal, .. } = &entry.step
                 && let Some(record) = &open.record
@@ -44,8 +52,11 @@ struct Clerk<'r> {
     recording: &'r Recording,
     docket: Docket,
     under_way: Option<RecordedNegotiation>,
-    /// Those that ended since the last decision, and whose users have all stayed.
-    settled: Vec<RecordedNegotiation>,
+    /// Those that ended since the last decision; nothing in place of those whose users have not
+    /// all stayed.
+    settled: Vec<Option<RecordedNegotiation>>,
+    /// Where in `settled` each user's are: a forged trace may have any number of both.
+    of_user: BTreeMap<UserId, Vec<usize>>,
     /// Decisions so far.
     told: u64,
 }
@@ -78,7 +89,10 @@ impl Clerk<'_> {
                         rounds: ended.rounds,
                         ending: ended.ending.clone(),
                     });
-                    self.settled.push(negotiation);
+                    for user in [negotiation.current, negotiation.interrupting] {
+                        self.of_user.entry(user).or_default().push(self.settled.len());
+                    }
+                    self.settled.push(Some(negotiation));
                 }
                 None => self.docket.stray.push(entry.index),
             },
@@ -98,17 +112,25 @@ impl Clerk<'_> {
         let with = |negotiation: &RecordedNegotiation| {
             negotiation.current == user || negotiation.interrupting == user
         };
-        self.docket.without_decision.extend(self.settled.extract_if(.., |one| with(one)));
+        for place in self.of_user.remove(&user).unwrap_or_default() {
+            self.docket.without_decision.extend(self.settled.get_mut(place).and_then(Option::take));
+        }
         self.docket.without_decision.extend(self.under_way.take_if(|one| with(one)));
     }
 
     fn drop_all(&mut self) {
-        self.docket.without_decision.append(&mut self.settled);
+        let settled = self.take_settled();
+        self.docket.without_decision.extend(settled);
         self.docket.without_decision.extend(self.under_way.take());
     }
 
+    fn take_settled(&mut self) -> Vec<RecordedNegotiation> {
+        self.of_user.clear();
+        std::mem::take(&mut self.settled).into_iter().flatten().collect()
+    }
+
     fn decide(&mut self, entry: &Entry, decided: &evidence::Decided) {
-        let negotiations = std::mem::take(&mut self.settled);
+        let negotiations = self.take_settled();
         self.docket.without_decision.extend(self.under_way.take());
         let decision = self.next();
         self.docket.decisions.push(RecordedDecision {

@@ -72,26 +72,13 @@ impl Inputs {
     }
 }
 
-/// Rules under which a mission would allocate more cells of memory than this for its users are
-/// not made again: a forged trace could ask for any amount. The default limits make some
-/// hundreds.
-const MAX_CELLS: usize = 1 << 20;
-
-/// The rules of a recorded mission, if they are there and ask for no unreasonable memory.
+/// The rules of a recorded mission, if they are there. What a robot takes as its limits is what
+/// is run again, and no more: [`MissionRules::new`] bounds the memory that they may ask for.
 ///
 /// # Errors
 /// Why not, in words.
 pub(crate) fn rules_to_run(recording: &Recording) -> Result<MissionRules, String> {
-    let rules = recording.mission_rules().map_err(|error| error.to_string())?;
-    let limits = rules.specification().limits;
-    let ranks = usize::from(limits.profiles).saturating_mul(rules.bound().dispositions());
-    let each =
-        usize::from(limits.conditions).saturating_add(usize::from(limits.attributes)).saturating_add(ranks);
-    let cells = each.saturating_mul(usize::from(limits.users));
-    if cells > MAX_CELLS {
-        return Err(format!("its limits ask for {cells} cells of memory, expected at most {MAX_CELLS}"));
-    }
-    Ok(rules)
+    recording.mission_rules().map_err(|error| error.to_string())
 }
 
 /// For each decision, in their order, what it was made from.

@@ -10,8 +10,8 @@ use zeroize::Zeroizing;
 
 use super::keys::{AuditorKey, AuditorPublicKey};
 
-/// Most bytes that an envelope may hold.
-const MAX_BYTES: u64 = 256 << 20;
+/// Most bytes that an envelope may hold. Ours are written when they have about 256 KiB.
+const MAX_BYTES: u64 = 16 << 20;
 
 /// No envelope is shorter before its encryption.
 const LEAST_BYTES: u64 = 512;
@@ -38,8 +38,12 @@ pub enum EnvelopeError {
 /// content's (Padmé: at most about a ninth more).
 ///
 /// # Errors
-/// Without a recipient, or what the system's randomness fails with.
+/// Without a recipient, of more than 16 MiB, which nobody would open, or what the system's
+/// randomness fails with.
 pub fn seal(content: &[u8], recipients: &[AuditorPublicKey]) -> io::Result<Vec<u8>> {
+    if u64::try_from(content.len()).unwrap_or(u64::MAX) > MAX_BYTES {
+        return Err(io::Error::other(format!("a segment of more than {MAX_BYTES} bytes")));
+    }
     let encryptor = Encryptor::with_recipients(recipients.iter().map(|key| &key.0 as &dyn age::Recipient))
         .map_err(io::Error::other)?;
     let padded = packed(content)?;
@@ -140,6 +144,25 @@ mod tests {
         assert_eq!(open(&sealed, &[AuditorKey::generate()]), Err(EnvelopeError::NoKeyFits));
         assert_eq!(open(&sealed, &[]), Err(EnvelopeError::NoKeyFits));
         assert!(seal(b"content", &[]).is_err());
+    }
+
+    #[test]
+    fn what_is_too_much_is_neither_sealed_nor_opened() {
+        let key = AuditorKey::generate();
+        let most = usize::try_from(MAX_BYTES).unwrap();
+        let sealed = seal(&vec![0; most], &[key.public()]).unwrap();
+        assert_eq!(open(&sealed, std::slice::from_ref(&key)).unwrap().len(), most);
+        assert!(seal(&vec![0; most + 1], &[key.public()]).is_err());
+        let padded = packed(&vec![0; most + 1]).unwrap();
+        let recipient = key.public();
+        let encryptor =
+            Encryptor::with_recipients(std::iter::once(&recipient.0 as &dyn age::Recipient)).unwrap();
+        let mut forged = Vec::new();
+        let mut writer = encryptor.wrap_output(&mut forged).unwrap();
+        writer.write_all(&padded).unwrap();
+        writer.finish().unwrap();
+        let opened = open(&forged, &[key]).map(|content| content.len());
+        assert_eq!(opened, Err(EnvelopeError::Content("more than 16777216 bytes".to_owned())));
     }
 
     /// age adds a few bytes at random on top.

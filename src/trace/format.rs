@@ -23,3 +23,7 @@ pub(super) fn version() -> String {
 
 /// The name of the metadata record of a clear copy that says what it is a copy of.
 pub const UNSEALED_RECORD: &str = "selfneg.unsealed";
+
+/// Most bytes of a message of the evidence, but for one that holds a segment. A list of empty
+/// things takes some forty times as much in memory as in the file.
+pub(super) const MAX_MESSAGE_BYTES: usize = 4 << 20;

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use prost::Message as _;
+use prost::encoding::{DecodeContext, decode_key, skip_field};
 
 use super::error::TraceError;
 use super::reader::{Channel, Message};
@@ -18,6 +19,13 @@ use crate::seal::chain::ciphertext_digest;
 use crate::seal::envelope::{self, EnvelopeError};
 use crate::seal::verification::{SealState, head, verify};
 use crate::seal::{AuditorKey, TraceId};
+
+/// Most bytes of all segments opened, and beside them so many for each byte of the file.
+const MAX_BYTES: usize = 1 << 30;
+const MAX_RATIO: usize = 64;
+
+/// No message in a segment is shorter: it names its topic and type.
+const LEAST_INNER: usize = 32;
 
 /// A trace, with what its seal proves and what of its personal part is there.
 #[derive(Clone, Debug)]
@@ -121,10 +129,12 @@ pub(super) fn decrypt(scan: &Scan, identities: &[AuditorKey]) -> Result<Decrypte
     let trace = head(scan).map(|head| head.trace);
     let mut locked = Vec::new();
     let mut inner = Vec::new();
+    let length = usize::try_from(scan.length).unwrap_or(usize::MAX);
+    let mut room = MAX_BYTES.saturating_add(length.saturating_mul(MAX_RATIO));
     for Found { sequence, sealed } in found {
         let Some(ciphertext) = sealed.ciphertext.as_deref() else { continue };
         decrypted.segments = decrypted.segments.saturating_add(1);
-        let what = match opened(&sealed, ciphertext, trace, identities) {
+        let what = match opened(&sealed, ciphertext, trace, identities, &mut room) {
             Ok(messages) => {
                 decrypted.privacy = PersonalPart::Open;
                 inner.extend(messages.into_iter().map(|message| (sequence, message)));
@@ -214,13 +224,15 @@ fn opened(
     ciphertext: &[u8],
     trace: Option<TraceId>,
     identities: &[AuditorKey],
+    room: &mut usize,
 ) -> Result<Vec<Inner>, Failed> {
     let content = envelope::open(ciphertext, identities).map_err(|error| match error {
         EnvelopeError::NoKeyFits => Failed::NoKeyFits,
         error => Failed::Otherwise(error.to_string()),
     })?;
-    let segment =
-        Segment::decode(content.as_slice()).map_err(|error| Failed::Otherwise(error.to_string()))?;
+    let too_much = || Failed::Otherwise("the segments hold more than a reader takes".to_owned());
+    *room = room.checked_sub(content.len()).ok_or_else(too_much)?;
+    let segment = segment_in(&content).map_err(|error| Failed::Otherwise(error.to_string()))?;
     let is_here = trace.is_some_and(|trace| trace.0 == *segment.trace_id)
         && (&segment.subject, segment.segment) == (&sealed.subject, sealed.segment);
     if is_here {
@@ -228,6 +240,23 @@ fn opened(
     } else {
         Err(Failed::Otherwise("its content was sealed for another place or another trace".to_owned()))
     }
+}
+
+/// A segment, unless it is a list of messages with nothing in them, which takes fifty times as
+/// much in memory.
+fn segment_in(content: &[u8]) -> Result<Segment, prost::DecodeError> {
+    let (mut rest, mut fields) = (content, 0_usize);
+    while !rest.is_empty() {
+        let (tag, wire_type) = decode_key(&mut rest)?;
+        skip_field(wire_type, tag, &mut rest, DecodeContext::default())?;
+        fields = fields.saturating_add(1);
+    }
+    // Beside the messages there are three fields.
+    if fields.saturating_sub(3) > content.len() / LEAST_INNER {
+        #[allow(deprecated, reason = "prost has no other way to say what is wrong")]
+        return Err(prost::DecodeError::new("messages with nothing in them"));
+    }
+    Segment::decode(content)
 }
 
 fn placed(message: Inner, sequence: u32, channels: &mut BTreeMap<(String, String), Arc<Channel>>) -> Message {
@@ -260,4 +289,19 @@ pub(super) fn merge<'m>(scan: &'m Scan, inner: &'m [Message]) -> Vec<&'m Message
     }
     merged.extend(inner);
     merged
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_with_nothing_in_them_are_not_made_room_for() {
+        let inner = |topic: &str| Inner { topic: topic.to_owned(), ..Inner::default() };
+        let of = |messages: Vec<Inner>| Segment { messages, ..Segment::default() }.encode_to_vec();
+        assert!(segment_in(&of(vec![inner(""); 1_000])).is_err());
+        let honest = of(vec![inner("/personal/event of selfneg.personal.v1.Input"); 1_000]);
+        assert_eq!(segment_in(&honest).unwrap().messages.len(), 1_000);
+        assert_eq!(segment_in(&[]).unwrap(), Segment::default());
+    }
 }

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::io::Read as _;
 use std::sync::Arc;
 
-use mcap::records::{ChunkIndex, MessageHeader, MessageIndex, Record, op};
+use mcap::records::{ChunkIndex, MessageHeader, MessageIndex, Record, Statistics, SummaryOffset, op};
 
 use super::error::TraceError;
 use super::format::{FORMAT_KEY, FORMAT_MAJOR, FORMAT_RECORD};
@@ -27,6 +27,10 @@ const MAX_BYTES: u64 = 1 << 30;
 const MAX_RATIO: u64 = 64;
 
 const OPCODE_AND_LENGTH: usize = 9;
+
+/// Most bytes of the name of the library that wrote the file: nobody signs it, and whoever writes
+/// the file anew puts another one.
+const MAX_LIBRARY_BYTES: usize = 64;
 
 /// How messages and schemas are encoded.
 pub(super) const PROTOBUF: &str = "protobuf";
@@ -139,6 +143,23 @@ pub struct Reader<'a> {
     indexed: usize,
     /// The bytes of the chunks so far, decompressed.
     unpacked: u64,
+    /// How many messages each channel has.
+    counts: BTreeMap<u16, u64>,
+    /// The least and the largest time of all messages.
+    times: Option<(u64, u64)>,
+    /// The records of the summary before its offsets.
+    groups: Groups,
+}
+
+/// Where the records of each kind are in the summary: their begin and end.
+#[derive(Debug, Default)]
+struct Groups {
+    of_kind: BTreeMap<u8, (u64, u64)>,
+    last: Option<u8>,
+    /// Kinds whose records are in several places.
+    scattered: bool,
+    /// Where the offsets begin.
+    offsets: Option<u64>,
 }
 
 /// Times and offsets of a chunk's messages, by channel.
@@ -194,6 +215,9 @@ impl<'a> Reader<'a> {
             last_chunk: None,
             indexed: 0,
             unpacked: 0,
+            counts: BTreeMap::new(),
+            times: None,
+            groups: Groups::default(),
         }
     }
 
@@ -289,7 +313,7 @@ impl<'a> Reader<'a> {
             }
             // A footer without an end of the data is no file that a writer finished.
             op::FOOTER => Err(malformed(at, "a footer before the end of the data")),
-            op::HEADER if at == mcap::MAGIC.len() => Ok(()),
+            op::HEADER if at == mcap::MAGIC.len() => self.header(body, at),
             op::MESSAGE_INDEX => self.message_index(body, at),
             // Attachments, and what is not known: nothing to yield. They are not parsed;
             // mcap's parser of attachments panics on short ones.
@@ -300,13 +324,28 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Nothing but the name of a library that wrote the file.
+    fn header(&mut self, body: &[u8], at: usize) -> Result<(), TraceError> {
+        let Record::Header(header) = parse(op::HEADER, body, at)? else { return Ok(()) };
+        let (profile, library) = (&header.profile, &header.library);
+        let short = library.len() <= MAX_LIBRARY_BYTES && !library.chars().any(char::is_control);
+        let exact = body.len() == profile.len().saturating_add(library.len()).saturating_add(8);
+        if !profile.is_empty() || !short || !exact {
+            let what = "more than a library's name in the header".to_owned();
+            self.added.push(Added { at: wide(at), what });
+        }
+        Ok(())
+    }
+
     fn summary(&mut self, opcode: u8, body: &[u8], begin: usize, at: usize) -> Result<(), TraceError> {
+        self.groups.note(opcode, wide(at), wide(self.at));
         match opcode {
             op::FOOTER => {}
             // Viewers that seek go where it leads.
             op::CHUNK_INDEX => return self.chunk_index(body, at),
             op::METADATA_INDEX => return self.metadata_index(body, at),
-            op::STATISTICS | op::SUMMARY_OFFSET => return Ok(()),
+            op::STATISTICS => return self.statistics(body, at),
+            op::SUMMARY_OFFSET => return self.summary_offset(body, at),
             // Viewers that seek take them from here.
             op::SCHEMA | op::CHANNEL => return self.repeated(opcode, body, at),
             _ => {
@@ -322,6 +361,9 @@ impl<'a> Reader<'a> {
             // 0 is no summary at all.
             if footer.summary_start != 0 && footer.summary_start != wide(begin) {
                 self.leads_elsewhere(at, "a footer that leads to another summary");
+            }
+            if footer.summary_offset_start != 0 && self.groups.offsets != Some(footer.summary_offset_start) {
+                self.leads_elsewhere(at, "a footer that leads to other offsets of the summary");
             }
             if self.indexed != 0 && self.indexed != self.chunks.len() {
                 self.leads_elsewhere(at, "a summary that leads to some chunks and not to all");
@@ -470,6 +512,44 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
+    /// It counts what is there.
+    fn statistics(&mut self, body: &[u8], at: usize) -> Result<(), TraceError> {
+        let Record::Statistics(said) = parse(op::STATISTICS, body, at)? else { return Ok(()) };
+        let exact = body.len() == said.channel_message_counts.len().saturating_mul(10).saturating_add(46);
+        let (message_start_time, message_end_time) = self.times.unwrap_or_default();
+        let narrow = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
+        let counted = Statistics {
+            message_count: self.found,
+            schema_count: u16::try_from(self.schemas.len()).unwrap_or(u16::MAX),
+            channel_count: narrow(self.channels.len()),
+            // An attachment is none of ours, and found fault with by itself.
+            attachment_count: 0,
+            metadata_count: narrow(self.notes.len()),
+            chunk_count: narrow(self.chunks.len()),
+            message_start_time,
+            message_end_time,
+            channel_message_counts: self.counts.clone(),
+        };
+        let mut said = said;
+        said.channel_message_counts.retain(|_, count| *count != 0);
+        if !exact || said != counted {
+            self.leads_elsewhere(at, "statistics that are not of the data");
+        }
+        Ok(())
+    }
+
+    /// It leads to all records of one kind in the summary.
+    fn summary_offset(&mut self, body: &[u8], at: usize) -> Result<(), TraceError> {
+        let Record::SummaryOffset(offset) = parse(op::SUMMARY_OFFSET, body, at)? else { return Ok(()) };
+        let SummaryOffset { group_opcode, group_start, group_length } = offset;
+        let group = self.groups.of_kind.get(&group_opcode);
+        let same = group == Some(&(group_start, group_start.saturating_add(group_length)));
+        if !same || self.groups.scattered {
+            self.leads_elsewhere(at, "an offset of the summary that leads to other records");
+        }
+        Ok(())
+    }
+
     /// Reading goes on: an index is for viewers that seek, and nothing is read by it here.
     fn leads_elsewhere(&mut self, at: usize, what: &str) {
         self.added.push(Added { at: wide(at), what: what.to_owned() });
@@ -515,6 +595,11 @@ impl<'a> Reader<'a> {
                     is_inner: false,
                 });
                 self.found = self.found.saturating_add(1);
+                let count = self.counts.entry(header.channel_id).or_default();
+                *count = count.saturating_add(1);
+                let time = header.log_time;
+                let (first, last) = self.times.unwrap_or((time, time));
+                self.times = Some((first.min(time), last.max(time)));
                 return Ok(Some(header));
             }
             _ => {}
@@ -565,6 +650,20 @@ impl<'a> Reader<'a> {
             opcode => format!("a record of kind {opcode:#04x}"),
         };
         self.added.push(Added { at: wide(at), what });
+    }
+}
+
+impl Groups {
+    fn note(&mut self, opcode: u8, begin: u64, end: u64) {
+        match opcode {
+            op::FOOTER => {}
+            op::SUMMARY_OFFSET => self.offsets = self.offsets.or(Some(begin)),
+            _ if self.last == Some(opcode) => {
+                self.of_kind.entry(opcode).and_modify(|group| group.1 = end);
+            }
+            _ => self.scattered |= self.of_kind.insert(opcode, (begin, end)).is_some(),
+        }
+        self.last = Some(opcode);
     }
 }
 

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use super::encode::Open;
 use super::error::TraceError;
+use super::format::MAX_MESSAGE_BYTES;
 use super::reader::Message;
 use super::scan::Scan;
 use super::schema::{Schema, evidence, personal};
@@ -269,5 +270,8 @@ pub(super) fn bad(message: &Message, what: &str) -> TraceError {
 }
 
 pub(super) fn decoded<M: prost::Message + Default>(message: &Message) -> Result<M, TraceError> {
+    if message.data.len() > MAX_MESSAGE_BYTES && *message.schema != *Schema::Sealed.name() {
+        return Err(bad(message, &format!("more than {MAX_MESSAGE_BYTES} bytes")));
+    }
     M::decode(message.data.as_slice()).map_err(|error| bad(message, &error.to_string()))
 }

@@ -11,7 +11,7 @@ use selfneg_sim::{Person, World};
 
 use super::copying::{begin, into_io};
 use super::encode::{Encoder, Open};
-use super::format::{FORMAT_KEY, FORMAT_RECORD, version};
+use super::format::{FORMAT_KEY, FORMAT_RECORD, MAX_MESSAGE_BYTES, version};
 use super::reader::PROTOBUF;
 use super::schema::Schema;
 use super::schema::evidence::{self, Commitment, End};
@@ -183,6 +183,7 @@ impl<W: Write> TraceWriter<W> {
         message: &impl Message,
     ) -> io::Result<()> {
         debug_assert!(topic.is_personal());
+        readable(&topic, message)?;
         let after = self.messages.saturating_sub(1);
         match &mut self.privacy {
             PrivacyInForce::Plain => self.put(topic, at, &message.encode_to_vec()),
@@ -398,6 +399,7 @@ impl<W: Write> Watcher for TraceWriter<W> {
         };
         let header = setup::header(setup, &rules, privacy);
         let digest = header.rules_digest.as_slice().try_into().map_err(io::Error::other)?;
+        readable(&Topic::HEADER, &header)?;
         self.seal(digest)?;
         self.open(Topic::HEADER, at, &header)?;
         self.personal(Whose::Everyone, Topic::RULES, at, &rules)?;
@@ -491,6 +493,19 @@ impl<W: Write> Watcher for TraceWriter<W> {
             self.file = Pen::Ended(Some(file));
         }
         Ok(())
+    }
+}
+
+/// What no reader would take is not written.
+fn readable(topic: &Topic, message: &impl Message) -> io::Result<()> {
+    match message.encoded_len() {
+        0..=MAX_MESSAGE_BYTES => Ok(()),
+        length => {
+            let topic = &topic.name;
+            let most = MAX_MESSAGE_BYTES;
+            let what = format!("a message of {length} bytes on {topic}; a trace holds at most {most} in one");
+            Err(io::Error::other(what))
+        }
     }
 }
 

@@ -129,6 +129,13 @@ impl Pieces {
         panic!("there is no such record");
     }
 
+    /// Of how many records this is true.
+    pub(crate) fn count(&self, is: impl Fn(&evidence::record::Record) -> bool) -> usize {
+        let records = self.messages.iter().filter(|message| &*message.schema == "selfneg.v1.Record");
+        let records = records.filter_map(|message| evidence::Record::decode(message.data.as_slice()).ok());
+        records.filter(|record| record.record.as_ref().is_some_and(&is)).count()
+    }
+
     /// Takes out the first record of which this is true, with its personal part.
     pub(crate) fn take_out(&mut self, mut is: impl FnMut(&evidence::record::Record) -> bool) {
         let place = self.messages.iter().position(|message| {
