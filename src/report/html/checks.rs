@@ -106,7 +106,7 @@ fn row(property: &PropertyResult) -> Markup {
     html! {
         tr {
             th scope="row" { (property.name) @if let Some(said) = said { " " span.says { (said) } } }
-            td { span class={ "verdict fixed " (class) } { span aria-hidden="true" { (sign) } " " (word) } }
+            td { span class={ "verdict " (class) } { span aria-hidden="true" { (sign) } " " (word) } }
             td.fixed { (property.checked) @if property.checked == 1 { " time" } @else { " times" } }
         }
     }
