@@ -18,11 +18,9 @@ mod random_mission;
 use std::io;
 use std::time::Instant;
 
-use random_mission::Choice;
+use random_mission::{Choice, data};
 use rayon::prelude::*;
 use selfneg::audit::{Keys, Status, audit};
-use selfneg::input::Truth;
-use selfneg::mission::{LOCATION, Profile, Stated, UserData};
 use selfneg::seal::{AuditorKey, Privacy, RobotKey, Seal};
 use selfneg::trace::TraceWriter;
 use selfneg_core::Options;
@@ -32,26 +30,6 @@ const EACH: usize = 10;
 
 fn random(bytes: &mut [u8]) -> io::Result<()> {
     getrandom::fill(bytes).map_err(io::Error::other)
-}
-
-fn data(ranks: [u8; 6], conditions: &[&'static str]) -> UserData {
-    let names = [
-        "people with a small child",
-        "elderly people",
-        "disabled people",
-        "people in urgency",
-        "people with health conditions",
-        "people with crowd anxiety",
-    ];
-    let stated = |&condition: &&'static str| Stated { condition: condition.into(), truth: Truth::True };
-    UserData {
-        profiles: vec![Profile {
-            label: "mall".into(),
-            ranks: names.into_iter().map(Into::into).zip(ranks).collect(),
-        }],
-        status: conditions.iter().map(stated).collect(),
-        context: vec![(LOCATION.into(), "mall".into())],
-    }
 }
 
 /// Alice and Bob, again and again: the paper's case, two rounds.

@@ -16,11 +16,10 @@ use std::fmt::Write as _;
 use std::sync::OnceLock;
 
 use prost::Message as _;
-use random_mission::Choice;
+use random_mission::{Choice, data};
 use rewriting::Pieces;
 use selfneg::audit::{Audit, Keys, Property, Redecided, Status, Verdict as Checked, audit};
-use selfneg::input::Truth;
-use selfneg::mission::{Evidence, LOCATION, Profile, Stated, UserData};
+use selfneg::mission::Evidence;
 use selfneg::seal::AuditorKey;
 use selfneg::seal::chain::rules_digest;
 use selfneg::trace::PERSONAL;
@@ -28,26 +27,6 @@ use selfneg::trace::schema::evidence::record::Record;
 use selfneg::trace::schema::evidence::{self, Verdict, round, served};
 use selfneg::trace::schema::personal::{self, reply};
 use selfneg_core::Options;
-
-fn data(ranks: [u8; 6], conditions: &[&'static str]) -> UserData {
-    let names = [
-        "people with a small child",
-        "elderly people",
-        "disabled people",
-        "people in urgency",
-        "people with health conditions",
-        "people with crowd anxiety",
-    ];
-    let stated = |&condition: &&'static str| Stated { condition: condition.into(), truth: Truth::True };
-    UserData {
-        profiles: vec![Profile {
-            label: "mall".into(),
-            ranks: names.into_iter().map(Into::into).zip(ranks).collect(),
-        }],
-        status: conditions.iter().map(stated).collect(),
-        context: vec![(LOCATION.into(), "mall".into())],
-    }
-}
 
 /// The paper's Alice keeps precedence over Bob in two rounds; then an emergency is decided,
 /// and another one only claimed; then Bob, who is deferred, is served, and Carol takes over

@@ -12,36 +12,21 @@ mod random_mission;
 mod rewriting;
 
 use prost::Message as _;
-use random_mission::Choice;
+use random_mission::{Choice, data};
 use rewriting::Pieces;
 use selfneg::audit::{Audit, Keys, Status, audit};
-use selfneg::input::Truth;
-use selfneg::mission::{LOCATION, Profile, Stated, UserData};
 use selfneg::trace::schema::evidence::{self, Verdict, record::Record, round};
 use selfneg::trace::schema::personal::{self, input, reply};
 use selfneg::trace::{PERSONAL, Scan, TraceError};
 use selfneg_core::Options;
 
-fn data(ranks: [u8; 2], conditions: &[&'static str]) -> UserData {
-    let names = ["elderly people", "people in urgency"];
-    let stated = |&condition: &&'static str| Stated { condition: condition.into(), truth: Truth::True };
-    UserData {
-        profiles: vec![Profile {
-            label: "mall".into(),
-            ranks: names.into_iter().map(Into::into).zip(ranks).collect(),
-        }],
-        status: conditions.iter().map(stated).collect(),
-        context: vec![(LOCATION.into(), "mall".into())],
-    }
-}
-
 /// User 1 is being served; user 2 takes over after four rounds.
 fn honest() -> Pieces {
     let choices = vec![
         Choice::Request(1, 0),
-        Choice::Answer(data([5, 1], &["of nobody's rules"])),
+        Choice::Answer(data([0, 5, 0, 1, 0, 0], &["of nobody's rules"])),
         Choice::Request(2, 1),
-        Choice::Answer(data([5, 1], &["of nobody's rules", "elderly"])),
+        Choice::Answer(data([0, 5, 0, 1, 0, 0], &["of nobody's rules", "elderly"])),
         Choice::Rounds(60),
     ];
     Pieces::of(&random_mission::trace(choices, Options::default(), None))

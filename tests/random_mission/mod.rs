@@ -49,6 +49,19 @@ pub(crate) enum Choice {
     Shutdown,
 }
 
+/// What a user of the mall says: ranks of [`DISPOSITIONS`], and what is true.
+pub(crate) fn data(ranks: [u8; 6], conditions: &[&'static str]) -> UserData {
+    let stated = |&condition: &&'static str| Stated { condition: condition.into(), truth: Truth::True };
+    UserData {
+        profiles: vec![Profile {
+            label: "mall".into(),
+            ranks: DISPOSITIONS.into_iter().map(Into::into).zip(ranks).collect(),
+        }],
+        status: conditions.iter().map(stated).collect(),
+        context: vec![(LOCATION.into(), "mall".into())],
+    }
+}
+
 fn truth() -> impl Strategy<Value = Truth> {
     prop::sample::select(vec![Truth::True, Truth::True, Truth::False, Truth::Withheld])
 }
