@@ -11,7 +11,7 @@ use selfneg_model::protocol_graph::{Move, ProtocolGraph, moves_of};
 use serde::Serialize;
 
 use super::options::ProtocolOptions;
-use super::present::{GoalOptions, Present};
+use super::present::{Folders, Present};
 use super::{CommandError, Report, Status, json};
 use crate::binding::END_OF_GOAL;
 use crate::precedence::beats;
@@ -20,17 +20,8 @@ use crate::precedence::beats;
 /// several interrupters, with its cycles and Smith set
 #[derive(Debug, Args)]
 pub(super) struct Graph {
-    /// Folder of the rules (disposition activation and ethical implications)
-    #[arg(long, value_name = "DIR")]
-    rules: PathBuf,
-    /// Folder of the user being served
-    #[arg(long, value_name = "DIR")]
-    current: PathBuf,
-    /// Folders of the users who interrupt, in order of arrival
-    #[arg(long, value_name = "DIR", required = true, num_args = 1..)]
-    interrupting: Vec<PathBuf>,
     #[command(flatten)]
-    goals: GoalOptions,
+    folders: Folders,
     /// What to draw [default: protocol for one interrupter, beats for more]
     #[arg(long, value_enum, value_name = "WHAT")]
     of: Option<Subject>,
@@ -102,10 +93,9 @@ struct Drawn {
 
 impl Graph {
     pub(super) fn run(&self) -> Result<Report, CommandError> {
-        let folders = std::iter::once(&self.current).chain(&self.interrupting);
-        let present = Present::read(&self.rules, folders, &self.goals)?;
+        let present = self.folders.read()?;
         let options = self.options.variant(present.users.first().is_some_and(|current| current.end_of_goal));
-        let default = if self.interrupting.len() == 1 { Subject::Protocol } else { Subject::Beats };
+        let default = if self.folders.interrupters() == 1 { Subject::Protocol } else { Subject::Beats };
         let drawn = match self.of.unwrap_or(default) {
             Subject::Protocol => self.protocol(&present, options)?,
             Subject::Beats => who_beats_whom(&present, options)?,

@@ -1,12 +1,10 @@
 //! `selfneg negotiate`: one decision, with its transcript.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::options::ProtocolOptions;
-use super::present::{GoalOptions, Present};
+use super::present::{Folders, Present};
 use super::{CommandError, Report, Status, json};
 use crate::precedence::{Policy, decide};
 use crate::record::DecisionRecord;
@@ -15,17 +13,8 @@ use crate::story;
 /// Decide who gets precedence, and tell how the negotiation went
 #[derive(Debug, Args)]
 pub(super) struct Negotiate {
-    /// Folder of the rules (disposition activation and ethical implications)
-    #[arg(long, value_name = "DIR")]
-    rules: PathBuf,
-    /// Folder of the user being served
-    #[arg(long, value_name = "DIR")]
-    current: PathBuf,
-    /// Folders of the users who interrupt, in order of arrival
-    #[arg(long, value_name = "DIR", required = true, num_args = 1..)]
-    interrupting: Vec<PathBuf>,
     #[command(flatten)]
-    goals: GoalOptions,
+    folders: Folders,
     /// How bilateral negotiations decide among several interrupters [default: published for
     /// one or two interrupters, condorcet for more]
     #[arg(long, value_name = "POLICY", value_parser = PossibleValuesParser::new(Policy::ALL.iter().map(|value| value.name())).try_map(|name| name.parse::<Policy>()))]
@@ -39,10 +28,9 @@ pub(super) struct Negotiate {
 
 impl Negotiate {
     pub(super) fn run(&self) -> Result<Report, CommandError> {
-        let folders = std::iter::once(&self.current).chain(&self.interrupting);
-        let Present { rules, users, warnings } = Present::read(&self.rules, folders, &self.goals)?;
+        let Present { rules, users, warnings } = self.folders.read()?;
         let options = self.options.variant(users.first().is_some_and(|current| current.end_of_goal));
-        let policy = self.policy.unwrap_or(Policy::default_for(self.interrupting.len()));
+        let policy = self.policy.unwrap_or(Policy::default_for(self.folders.interrupters()));
         let decision = decide(&rules, &users, options, policy)?;
         let output = if self.json {
             json(&DecisionRecord::new(&decision, &users, &rules))?

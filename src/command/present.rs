@@ -21,6 +21,35 @@ pub(super) struct GoalOptions {
     interrupting_goal: Vec<String>,
 }
 
+/// The folders of a case: the rules, the current user, and who interrupts.
+#[derive(Debug, Args)]
+pub(super) struct Folders {
+    /// Folder of the rules (disposition activation and ethical implications)
+    #[arg(long, value_name = "DIR")]
+    rules: PathBuf,
+    /// Folder of the user being served
+    #[arg(long, value_name = "DIR")]
+    current: PathBuf,
+    /// Folders of the users who interrupt, in order of arrival
+    #[arg(long, value_name = "DIR", required = true, num_args = 1..)]
+    interrupting: Vec<PathBuf>,
+    #[command(flatten)]
+    goals: GoalOptions,
+}
+
+impl Folders {
+    /// Reads them all.
+    pub(super) fn read(&self) -> Result<Present, CommandError> {
+        let users = std::iter::once(&self.current).chain(&self.interrupting);
+        Present::read(&self.rules, users, &self.goals)
+    }
+
+    /// How many users interrupt.
+    pub(super) fn interrupters(&self) -> usize {
+        self.interrupting.len()
+    }
+}
+
 /// Everybody who is present, the current user first.
 pub(super) struct Present {
     pub(super) rules: BoundRules,
